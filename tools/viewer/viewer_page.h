@@ -16,7 +16,7 @@ struct ViewerFile {
   std::string_view content;  ///< Lives as long as the program.
 };
 
-/// index.html, viewer.js, worker.js, decoder.wasm.
+/// index.html, viewer.js, worker.js, decoder.wasm, questions.wasm.
 [[nodiscard]] std::span<const ViewerFile> viewer_files() noexcept;
 
 /// index.html, made to open a stream when its address names none.

@@ -1,46 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The engine's StreamReader behind functions of C, for WebAssembly: one reader a module instance. tools/viewer/build
-// compiles it; src/decoder.ts is its only caller. questions.cc asks the mesh that it holds.
+// compiles it; src/decoder.ts is its only caller. The questions of its mesh are a module of their own (questions.cc).
 //
-// Errors: this build has no exceptions to catch, so `throw` ends in __cxa_throw() below. That hands code and text to the
-// host, whose function throws in its own language and so leaves the module for good. After that the host reads what is there
-// (src/decoder.ts says what) and feeds nothing more; a new stream gets a new instance. A question that is refused leaves mesh and
-// reader as they were, but what it had of the stack is lost: the host asks nothing that would be.
-#include "tools/viewer/decoder/decoder.h"
-
+// Errors: what is refused leaves the module for good (module.h). After that the host reads what is there (src/decoder.ts says
+// what) and feeds nothing more; a new stream gets a new instance.
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <exception>
-#include <new>
-#include <string_view>
-#include <typeinfo>
+#include <span>
 #include <vector>
 
-#include "engine/error.h"
 #include "engine/query/terrain.h"
-
-/// Throws in the host. `code`: place in ErrorCode.
-extern "C" __attribute__((import_module("host"), import_name("fail"), noreturn)) void host_fail(
-    std::uint32_t code, const char* text, std::size_t bytes);
+#include "tools/viewer/decoder/ground.h"
+#include "tools/viewer/decoder/module.h"
 
 namespace {
 
-[[noreturn]] void fail(ptin::ErrorCode code, std::string_view text) {
-  host_fail(static_cast<std::uint32_t>(code), text.data(), text.size());
-}
+using ptin::viewer::PlainFacts;
 
 /// What 32 bits of address leave for the mesh and a frame, beside the allocator's own.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{3} << 30;
 
-/// Facts in the order in which src/decoder.ts reads them.
-struct PlainFacts {
-  double origin_x, origin_y, step_x, step_y;
-  double height_is_float, height_step, height_offset;
-  double min_x, min_y, max_x, max_y;
-  double min_height, max_height, base_error, base_deviation;
-};
+ptin::StreamReader& reader() {
+  static ptin::StreamReader the_reader("the stream", {{kMemoryBytes, {}}});
+  return the_reader;
+}
 
 std::vector<std::byte>& input() {
   static std::vector<std::byte> bytes;
@@ -48,43 +32,6 @@ std::vector<std::byte>& input() {
 }
 
 }  // namespace
-
-ptin::StreamReader& ptin::viewer::reader() {
-  static ptin::StreamReader the_reader("the stream", {{kMemoryBytes, {}}});
-  return the_reader;
-}
-
-using ptin::viewer::reader;
-
-// NOLINTBEGIN(bugprone-reserved-identifier): the names that the compiler calls.
-extern "C" void* __cxa_allocate_exception(std::size_t bytes) noexcept {
-  if (void* memory = std::malloc(bytes)) return memory;
-  fail(ptin::ErrorCode::resource_exhausted, "there is no memory left");
-}
-
-extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void (*)(void*)) {
-  if (*type == typeid(ptin::Error)) {
-    const auto* error = static_cast<const ptin::Error*>(thrown);
-    fail(error->code(), error->what());
-  }
-  fail(ptin::ErrorCode::internal, "the decoder failed in a way that it does not know");
-}
-extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }
-
-/// Debian's divisions of 128 bits (libclang-rt) are compiled to watch their stack by these.
-extern "C" {
-std::uintptr_t __stack_chk_guard = 0x5dec0de5;
-[[noreturn]] void __stack_chk_fail() { __builtin_trap(); }
-}
-// NOLINTEND(bugprone-reserved-identifier)
-
-void* operator new(std::size_t bytes) {
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
-  fail(ptin::ErrorCode::resource_exhausted,
-       "the browser gives no more memory; open the stream at a larger error");
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 /// Room for the bytes that are fed next. Valid until the next call.
 PTIN_EXPORT(room) std::byte* room(std::size_t bytes) {
@@ -111,6 +58,13 @@ PTIN_EXPORT(certifiedError) double certified_error() { return reader().certifica
 PTIN_EXPORT(certifiedDeviation) double certified_deviation() {
   return reader().certificate().deviation;
 }
+/// What holds of any mesh of the terrain.
+PTIN_EXPORT(reliefError) double relief_error() {
+  return ptin::certificate_by_relief(reader().facts()).error;
+}
+PTIN_EXPORT(reliefDeviation) double relief_deviation() {
+  return ptin::certificate_by_relief(reader().facts()).deviation;
+}
 
 /// The mesh, as engine/mesh/tin.h has it in memory. Valid until the next call of feed().
 PTIN_EXPORT(vertexCount) std::size_t vertex_count() { return reader().tin().vertices.size(); }
@@ -124,23 +78,23 @@ static_assert(sizeof(ptin::Vertex) == 16 && offsetof(ptin::Vertex, height) == 8 
 
 PTIN_EXPORT(facts) const PlainFacts* facts() {
   static PlainFacts plain;
-  const ptin::StoreFacts& f = reader().facts();
-  plain = {f.map.origin_x,
-           f.map.origin_y,
-           f.map.step_x,
-           f.map.step_y,
-           f.heights.type == ptin::HeightType::float32 ? 1.0 : 0.0,
-           f.heights.step,
-           f.heights.offset,
-           static_cast<double>(f.bounds.min_x),
-           static_cast<double>(f.bounds.min_y),
-           static_cast<double>(f.bounds.max_x),
-           static_cast<double>(f.bounds.max_y),
-           f.min_height,
-           f.max_height,
-           f.base_error,
-           f.base_deviation};
+  plain = ptin::viewer::plain(reader().facts());
   return &plain;
 }
 PTIN_EXPORT(metadata) const char* metadata() { return reader().metadata().data(); }
 PTIN_EXPORT(metadataBytes) std::size_t metadata_bytes() { return reader().metadata().size(); }
+
+/// Metres over ground between two map positions; not a number where that is not known.
+PTIN_EXPORT(metresBetween) double metres_between(double ax, double ay, double bx, double by) {
+  const ptin::Ground on = ptin::viewer::ground();
+  return on.distance({ax, ay}, {bx, by}) * on.metres_per_height;
+}
+
+/// Metres over ground of one map unit along x and of one along y, at a position. Valid until the next call.
+PTIN_EXPORT(metresPerMapUnit) const ptin::MapPoint* metres_per_map_unit(double x, double y) {
+  static ptin::MapPoint metres;
+  const ptin::Ground on = ptin::viewer::ground();
+  const ptin::MapPoint per_unit = on.per_map_unit({x, y});
+  metres = {per_unit.x * on.metres_per_height, per_unit.y * on.metres_per_height};
+  return &metres;
+}

@@ -1,88 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The engine's questions of the mesh that was received (engine/query/received), for WebAssembly. Answers are arrays of
-// doubles, valid until the next question; src/decoder.ts knows their order.
+// The engine's questions of a mesh that was received (engine/query/received), for WebAssembly: a module beside the decoder,
+// which the page fetches when it is asked for the first time. src/questions.ts, its only caller, copies the decoder's mesh into
+// it. Answers are arrays of doubles, valid until the next question; src/questions.ts knows their order.
+//
+// Errors: what is refused leaves the module for good (module.h), and the host takes a new instance.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include <boost/geometry/formulas/vincenty_inverse.hpp>
-#include <boost/geometry/srs/spheroid.hpp>
-
-#include "engine/crs/ground_facts.h"
 #include "engine/error.h"
-#include "tools/viewer/decoder/decoder.h"
+#include "engine/query/terrain.h"
+#include "tools/viewer/decoder/ground.h"
+#include "tools/viewer/decoder/module.h"
 
 namespace {
 
 using ptin::MapPoint;
-using ptin::viewer::reader;
+using ptin::viewer::ground;
+using ptin::viewer::PlainFacts;
 
 constexpr std::uint64_t kAnswerBytes = std::uint64_t{256} << 20;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpeedOfLight = 299792458.0;  // metres a second
 
-/// What the metadata of the stream tell beside its facts.
-struct Told {
-  ptin::GroundFacts ground;
-  bool free_of_voids = false;
-  bool is_whole = false;  ///< No record of the file is missing.
+/// The mesh that is asked, as the decoder had it, and what the host knows of it.
+struct Asked {
+  ptin::Tin tin;
+  PlainFacts plain{};
+  ptin::StoreFacts facts;
+  ptin::Certificate certificate;
 };
-Told& told() {
-  static Told the_told;
-  return the_told;
+Asked& asked() {
+  static Asked the_asked;
+  return the_asked;
 }
 
-/// Metres along the ellipsoid, by Vincenty's formula as Boost has it: within 0.1 mm of Karney's. It does not converge towards
-/// the opposite side of the Earth, where the answer is not a number.
-double geodesic_length(MapPoint a, MapPoint b) {
-  constexpr double kRadians = 3.14159265358979323846 / 180;
-  constexpr double kFarthest = 170.0;  // degrees of longitude
-  const double aside = std::abs(std::remainder(b.x - a.x, 360.0));
-  if (!(aside <= kFarthest && std::abs(a.y) <= 90 && std::abs(b.y) <= 90)) return kUnknown;
-  const ptin::GroundFacts& facts = told().ground;
-  const double f = facts.inverse_flattening > 0 ? 1 / facts.inverse_flattening : 0.0;
-  const boost::geometry::srs::spheroid<double> ellipsoid(facts.semi_major,
-                                                         facts.semi_major * (1 - f));
-  using Inverse = boost::geometry::formula::vincenty_inverse<double, true, false>;
-  return Inverse::apply(a.x * kRadians, a.y * kRadians, b.x * kRadians, b.y * kRadians, ellipsoid)
-      .distance;
-}
-
-ptin::Ground ground() { return ptin::ground_of(told().ground, geodesic_length); }
-
-double metres_over_ground(MapPoint a, MapPoint b) {
-  const ptin::Ground on = ground();
-  return on.distance(a, b) * on.metres_per_height;
-}
+ptin::ReceivedMesh mesh() { return {asked().tin, asked().facts, asked().certificate}; }
 
 /// The distance along a profile, as the program has it: in map units, of degrees in metres.
-double length_along(MapPoint a, MapPoint b) {
-  if (told().ground.geographic) return metres_over_ground(a, b);
+double length_along(const ptin::Ground& on, MapPoint a, MapPoint b) {
+  if (on.geographic) return on.distance(a, b) * on.metres_per_height;
   const double dx = b.x - a.x;
   const double dy = b.y - a.y;
   return std::sqrt(dx * dx + dy * dy);
-}
-
-ptin::StoreFacts& facts() {
-  static ptin::StoreFacts the_facts;
-  the_facts = reader().facts();
-  the_facts.free_of_voids = told().free_of_voids;
-  return the_facts;
-}
-
-/// @param is_certified  The certificate of the stream holds at the places that are asked.
-ptin::ReceivedMesh mesh(bool is_certified) {
-  const ptin::StoreFacts& of = facts();
-  ptin::Certificate certificate = ptin::certificate_by_relief(of);
-  if (is_certified) {
-    const ptin::Certificate& now = reader().certificate();
-    certificate = {std::min(now.error, certificate.error),
-                   std::min(now.deviation, certificate.deviation), told().is_whole};
-  }
-  return {reader().tin(), of, certificate};
 }
 
 std::vector<double>& answer() {
@@ -99,33 +64,36 @@ void add(const std::optional<ptin::SightPoint>& point) {
 
 }  // namespace
 
-/// What the metadata tell: the numbers of GroundFacts, whether the terrain is free of voids, and whether no record is missing.
+/// Room for a mesh, which the host fills: the arrays of engine/mesh/tin.h, and the facts. Valid until the next call.
+PTIN_EXPORT(makeRoom) void make_room(std::size_t vertices, std::size_t triangles) {
+  ptin::Tin& tin = asked().tin;
+  tin = {};  // The mesh before is not copied along.
+  tin.vertices.resize(vertices);
+  tin.has_height.resize(vertices);
+  tin.triangles.resize(triangles);
+  tin.classes.resize(triangles);
+}
+PTIN_EXPORT(vertices) ptin::Vertex* vertices() { return asked().tin.vertices.data(); }
+PTIN_EXPORT(hasHeight) std::uint8_t* has_height() { return asked().tin.has_height.data(); }
+PTIN_EXPORT(triangles) ptin::Triangle* triangles() { return asked().tin.triangles.data(); }
+PTIN_EXPORT(classes) ptin::TriangleClass* classes() { return asked().tin.classes.data(); }
+PTIN_EXPORT(facts) PlainFacts* facts() { return &asked().plain; }
+
+/// Takes over the facts that were filled in, and the certificate of the stream at the places that are asked next: infinity where
+/// it has none. `is_whole`: no record of the file is missing there.
 PTIN_EXPORT(describe)
-void describe(bool geographic, double semi_major, double inverse_flattening,
-              double radians_per_map_unit, double metres_per_map_unit, double metres_per_height,
-              bool free_of_voids, bool is_whole) {
-  told() = {{geographic, semi_major, inverse_flattening, radians_per_map_unit, metres_per_map_unit,
-             metres_per_height},
-            free_of_voids,
-            is_whole};
-}
-
-/// Metres over ground between two map positions; not a number where that is not known.
-PTIN_EXPORT(metresBetween) double metres_between(double ax, double ay, double bx, double by) {
-  return metres_over_ground({ax, ay}, {bx, by});
-}
-
-/// Metres over ground of one map unit along x and of one along y, at a position.
-PTIN_EXPORT(metresPerMapUnit) const double* metres_per_map_unit(double x, double y) {
-  const ptin::Ground on = ground();
-  const MapPoint per_unit = on.per_map_unit({x, y});
-  answer() = {per_unit.x * on.metres_per_height, per_unit.y * on.metres_per_height};
-  return answer().data();
+void describe(bool free_of_voids, double error, double deviation, bool is_whole) {
+  Asked& now = asked();
+  now.facts = ptin::viewer::facts_of(now.plain);
+  now.facts.free_of_voids = free_of_voids;
+  const ptin::Certificate relief = ptin::certificate_by_relief(now.facts);
+  now.certificate = {std::min(error, relief.error), std::min(deviation, relief.deviation),
+                     is_whole};
 }
 
 /// State (0 surface, 1 void, 2 outside), height, the interval of the full terrain's, and three corners: x, y on the map, height.
-PTIN_EXPORT(locate) const double* locate(double x, double y, bool is_certified) {
-  const ptin::ReceivedMesh of = mesh(is_certified);
+PTIN_EXPORT(locate) const double* locate(double x, double y) {
+  const ptin::ReceivedMesh of = mesh();
   const ptin::LocatedPoint p = ptin::locate_on(of, {x, y});
   answer() = {static_cast<double>(p.state), p.height, p.height_min, p.height_max};
   for (const ptin::LocatedPoint::Corner& corner : p.triangle) {
@@ -135,23 +103,14 @@ PTIN_EXPORT(locate) const double* locate(double x, double y, bool is_certified) 
   return answer().data();
 }
 
-/// What holds of any mesh of the terrain.
-PTIN_EXPORT(reliefError) double relief_error() {
-  return ptin::certificate_by_relief(facts()).error;
-}
-PTIN_EXPORT(reliefDeviation) double relief_deviation() {
-  return ptin::certificate_by_relief(facts()).deviation;
-}
-
-/// The number of points, and of each: distance, x, y, height, state. The host asks for no line without a length.
-PTIN_EXPORT(profile)
-const double* profile(double ax, double ay, double bx, double by, bool is_certified) {
-  const ptin::ReceivedMesh of = mesh(is_certified);
-  if (!std::isfinite(length_along({ax, ay}, {bx, by}))) {
+/// The number of points, and of each: distance, x, y, height, state.
+PTIN_EXPORT(profile) const double* profile(double ax, double ay, double bx, double by) {
+  const auto length = [on = ground()](MapPoint a, MapPoint b) { return length_along(on, a, b); };
+  if (!std::isfinite(length({ax, ay}, {bx, by}))) {
     ptin::refuse("the length of a line around the Earth is not known here; take a shorter one");
   }
   const std::vector<ptin::ProfilePoint> points =
-      ptin::profile_on(of, {ax, ay}, {bx, by}, length_along, kAnswerBytes);
+      ptin::profile_on(mesh(), {ax, ay}, {bx, by}, length, kAnswerBytes);
   answer() = {static_cast<double>(points.size())};
   for (const ptin::ProfilePoint& p : points) {
     answer().insert(answer().end(), {p.distance, p.position.x, p.position.y, p.height,
@@ -161,17 +120,17 @@ const double* profile(double ax, double ay, double bx, double by, bool is_certif
 }
 
 /// Verdict (as SightVerdict), length, clearance from and to, Fresnel ratio, and of clearance, obstruction and Fresnel zone: x, y,
-/// distance, height. In the unit of heights; not a number: there is none. The host asks for two different ends.
+/// distance, height. Lengths are in the unit of heights; not a number: there is none.
 PTIN_EXPORT(sight)
 const double* sight(double ax, double ay, double height_a, double bx, double by, double height_b,
-                    double hertz, bool is_certified) {
+                    double hertz) {
   const ptin::Ground on = ground();
   ptin::SightRequest request;
   request.curvature.earth_diameter = on.earth_diameter;
   request.ground_distance = on.distance;
   if (hertz > 0) request.wavelength = kSpeedOfLight / hertz / on.metres_per_height;
   const ptin::SightResult r =
-      ptin::sight_on(mesh(is_certified), {{ax, ay}, height_a, {bx, by}, height_b}, request);
+      ptin::sight_on(mesh(), {{ax, ay}, height_a, {bx, by}, height_b}, request);
   answer() = {static_cast<double>(r.verdict), r.length, r.clearance_min, r.clearance_max,
               r.fresnel_ratio.value_or(kUnknown)};
   add(r.clearance_at);

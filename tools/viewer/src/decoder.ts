@@ -1,26 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The engine's stream reader (decoder/decoder.cc), one a WebAssembly instance: bytes in as they come, a valid TIN at any time, and
-// the engine's answers about it (decoder/questions.cc).
-
-import { stationsOf } from './answers';
-import type { Located, MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
-import type { GroundFacts } from './earth';
-
-/** Why a stream was refused: the names of the engine's ErrorCode, in its order. */
-export const errorCodes = [
-  'invalid_argument', 'not_found', 'corruption', 'unsupported_version', 'io_error', 'resource_exhausted', 'cancelled',
-  'internal',
-] as const;
-export type ErrorCode = (typeof errorCodes)[number];
-
-/** The stream cannot be followed any further. What was decoded before stays readable. */
-export class DecodeError extends Error {
-  constructor(readonly code: ErrorCode, message: string) {
-    super(message);
-    this.name = 'DecodeError';
-  }
-}
+// The engine's stream reader (decoder/decoder.cc), one a WebAssembly instance: bytes in as they come, a valid TIN at any time.
+import type { MapPosition } from './answers';
+import { type DecodeError, type GroundFacts, type ModuleExports, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
 
 /** Facts of the terrain. Positions in the mesh are on a grid: map = origin + step * grid. */
 export interface Facts {
@@ -59,9 +41,7 @@ export interface MeshView {
   classes: Uint8Array;
 }
 
-interface Exports {
-  memory: WebAssembly.Memory;
-  _initialize(): void;
+interface Exports extends ModuleExports {
   room(bytes: number): number;
   feed(bytes: number, oneFrame: number): number;
   beginNext(): void;
@@ -82,34 +62,25 @@ interface Exports {
   facts(): number;
   metadata(): number;
   metadataBytes(): number;
-  describe(
-    geographic: number, semiMajor: number, inverseFlattening: number, radiansPerMapUnit: number, metresPerMapUnit: number,
-    metresPerHeight: number, freeOfVoids: number, isWhole: number): void;
   metresBetween(ax: number, ay: number, bx: number, by: number): number;
   metresPerMapUnit(x: number, y: number): number;
   reliefError(): number;
   reliefDeviation(): number;
-  locate(x: number, y: number, isCertified: number): number;
-  profile(ax: number, ay: number, bx: number, by: number, isCertified: number): number;
-  sight(
-    ax: number, ay: number, heightA: number, bx: number, by: number, heightB: number, hertz: number, isCertified: number): number;
 }
 
-const states: readonly PointState[] = ['surface', 'void', 'outside'];
-const verdicts: ReadonlyArray<Sight['verdict']> = ['visible', 'hidden', 'unsure', 'undefined'];
-const orNull = (value: number): number | null => (Number.isNaN(value) ? null : value);
+/** Numbers of PlainFacts (decoder/module.h). */
+export const factNumbers = 15;
+
+let versions = 0;
 
 export class Decoder {
   private readonly wasm: Exports;
   private failure: DecodeError | null = null;
+  /** Another number whenever the mesh may have changed; two decoders never have the same. */
+  version = ++versions;
 
   constructor(module: WebAssembly.Module) {
-    const fail = (code: number, text: number, bytes: number): never => {
-      const message = new TextDecoder().decode(new Uint8Array(this.wasm.memory.buffer, text, bytes));
-      throw new DecodeError(errorCodes[code] ?? 'internal', message);
-    };
-    this.wasm = new WebAssembly.Instance(module, { host: { fail } }).exports as unknown as Exports;
-    this.wasm._initialize();
+    this.wasm = instanceOf<Exports>(module);
   }
 
   /**
@@ -119,20 +90,20 @@ export class Decoder {
    */
   feed(bytes: Uint8Array, oneFrame = false): number {
     if (this.failure !== null) throw this.failure;
+    this.version = ++versions;
     try {
       const room = this.wasm.room(bytes.length);
       new Uint8Array(this.wasm.memory.buffer, room, bytes.length).set(bytes);
       return this.wasm.feed(bytes.length, oneFrame ? 1 : 0);
     } catch (error) {
-      this.failure = error instanceof DecodeError
-        ? error
-        : new DecodeError('resource_exhausted', 'the decoder came to its end: ' + String(error));
+      this.failure = decodeErrorOf(error);
       throw this.failure;
     }
   }
 
   /** Gives up the rest of a stream that was cut: the bytes fed next are those of another one. */
   beginNext(): void {
+    this.version = ++versions;
     this.wasm.beginNext();
   }
 
@@ -149,8 +120,11 @@ export class Decoder {
   /** Bytes of memory that the decoder holds. */
   get memoryBytes(): number { return this.wasm.memory.buffer.byteLength; }
 
+  /** The facts as both modules have them, in the order of PlainFacts. */
+  get plainFacts(): Float64Array { return numbersAt(this.wasm.memory, this.wasm.facts(), factNumbers); }
+
   get facts(): Facts {
-    const f = new Float64Array(this.wasm.memory.buffer, this.wasm.facts(), 15);
+    const f = this.plainFacts;
     return {
       originX: f[0], originY: f[1], stepX: f[2], stepY: f[3], heightIsFloat: f[4] !== 0, heightStep: f[5],
       heightOffset: f[6], minX: f[7], minY: f[8], maxX: f[9], maxY: f[10], minHeight: f[11], maxHeight: f[12],
@@ -164,12 +138,9 @@ export class Decoder {
     return new TextDecoder().decode(bytes);
   }
 
-  /** What the metadata tell, for questions. `isWhole`: no record of the file is missing. Without `ground` lengths are map units. */
-  describe(ground: GroundFacts | null, freeOfVoids: boolean, isWhole: boolean): void {
-    const g = ground;
-    this.wasm.describe(
-      g?.geographic === true ? 1 : 0, g?.semi_major ?? 6378137, g?.inverse_flattening ?? 0, g?.radians_per_map_unit ?? 0,
-      g?.metres_per_map_unit ?? 1, g?.metres_per_height ?? 1, freeOfVoids ? 1 : 0, isWhole ? 1 : 0);
+  /** Tells the ground below the terrain, for lengths; without any they are map units. */
+  describe(ground: GroundFacts | null): void {
+    describeGround(this.wasm, ground);
   }
 
   /** Over ground; not a number where that is not known. */
@@ -179,50 +150,13 @@ export class Decoder {
 
   /** Metres over ground of a map unit along x and along y. */
   metresPerMapUnit(at: MapPosition): [number, number] {
-    const [x, y] = this.numbers(this.wasm.metresPerMapUnit(at.x, at.y), 2);
+    const [x, y] = numbersAt(this.wasm.memory, this.wasm.metresPerMapUnit(at.x, at.y), 2);
     return [x, y];
   }
 
   /** What holds of any mesh of this terrain: both lie between its least and its greatest height. */
   get certificateByRelief(): Certificate {
     return { error: this.wasm.reliefError(), deviation: this.wasm.reliefDeviation() };
-  }
-
-  /** What the mesh holds at a place. `isCertified`: the stream's certificate holds there. */
-  locate(at: MapPosition, isCertified: boolean): Located {
-    const n = this.numbers(this.wasm.locate(at.x, at.y, isCertified ? 1 : 0), 13);
-    const state = states[n[0]];
-    const triangle = [4, 7, 10].map((i) => ({ x: n[i], y: n[i + 1], height: orNull(n[i + 2]) }));
-    return {
-      state, height: orNull(n[1]), least: orNull(n[2]), most: orNull(n[3]), triangle: state === 'outside' ? [] : triangle,
-    };
-  }
-
-  /** The heights along a line over the mesh. */
-  profile(a: MapPosition, b: MapPosition, isCertified: boolean): Omit<Profile, 'lengths'> {
-    const at = this.wasm.profile(a.x, a.y, b.x, b.y, isCertified ? 1 : 0);
-    const [count] = this.numbers(at, 1);
-    const n = this.numbers(at + 8, 5 * count);
-    const points = Array.from({ length: count }, (_, i) => ({
-      distance: n[5 * i], x: n[5 * i + 1], y: n[5 * i + 2], height: orNull(n[5 * i + 3]), state: states[n[5 * i + 4]],
-    }));
-    return { stations: stationsOf(points), length: points[count - 1].distance };
-  }
-
-  /** A line of sight over the mesh: heights above ground, in the height's unit. */
-  sight(a: MapPosition, heightA: number, b: MapPosition, heightB: number, hertz: number, isCertified: boolean): Sight {
-    const n = this.numbers(this.wasm.sight(a.x, a.y, heightA, b.x, b.y, heightB, hertz, isCertified ? 1 : 0), 17);
-    const point = (i: number): SightPoint => ({ x: n[i], y: n[i + 1], distance: n[i + 2], height: n[i + 3] });
-    return {
-      verdict: verdicts[n[0]], length: n[1],
-      clearance: Number.isNaN(n[9]) ? null : { min: n[2], max: n[3], at: point(5) },
-      fresnel: Number.isNaN(n[4]) ? null : { ratio: n[4], at: point(13) },
-    };
-  }
-
-  /** A copy of what an answer holds. */
-  private numbers(at: number, count: number): Float64Array {
-    return new Float64Array(this.wasm.memory.buffer, at, count).slice();
   }
 
   get mesh(): MeshView {

@@ -4,16 +4,7 @@
 import type { Lengths, MapPosition } from './answers';
 import type { Decoder } from './decoder';
 import type { Units } from './frame';
-
-/** As the engine's GroundFacts: what metadata of a stream hold under `ground`. */
-export interface GroundFacts {
-  geographic: boolean;
-  semi_major: number;
-  inverse_flattening: number;
-  radians_per_map_unit: number;
-  metres_per_map_unit: number;
-  metres_per_height: number;
-}
+import type { GroundFacts } from './module';
 
 /** What the stream was asked for: there its certificate holds. */
 export interface Request {

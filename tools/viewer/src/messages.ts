@@ -21,7 +21,8 @@ export type Source =
   | { kind: 'collection'; service: string; id: string };
 
 export type ToWorker =
-  | { kind: 'open'; source: Source; decoder: string; mostVertices: number }
+  /** `folder`: the address below which the viewer's files lie. */
+  | { kind: 'open'; source: Source; folder: string; mostVertices: number }
   /** The certified error at which to stop; 0: all there is. */
   | { kind: 'limit'; error: number }
   /** What the camera looks at, the coarsest part first. Static streams ignore it. */

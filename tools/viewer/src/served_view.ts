@@ -4,10 +4,11 @@
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import type { Certified, CertifiedPart } from './certified';
-import { DecodeError, Decoder } from './decoder';
+import { Decoder } from './decoder';
 import { Problem, checkAnswer } from './fetching';
 import type { Frame } from './frame';
 import type { Answer, Question, Wanted } from './messages';
+import { DecodeError } from './module';
 import type { Collection, Service, Serving } from './service';
 
 const firstBytes = 64 * 1024;

@@ -351,7 +351,7 @@ function welcome(boot: Boot): void {
     part('card').hidden = part('tools').hidden = false;
     boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
     boot.worker!.postMessage({
-      kind: 'open', source: boot.source, decoder: new URL('decoder.wasm', location.href).href, mostVertices: boot.mostVertices,
+      kind: 'open', source: boot.source, folder: new URL('.', location.href).href, mostVertices: boot.mostVertices,
     } satisfies ToWorker);
     start(boot);
   };

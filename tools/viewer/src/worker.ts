@@ -3,13 +3,14 @@
 // The Worker: receives, decodes, answers questions about the mesh that is there, and hands the page meshes to draw.
 import type { MapPosition } from './answers';
 import { type Certified, certifiedAt } from './certified';
-import { DecodeError } from './decoder';
 import type { Decoder } from './decoder';
 import { drawnMesh, surfaceEdges } from './drawn_mesh';
 import { type Told, earthOf, toldBy } from './earth';
 import { Problem } from './fetching';
 import { Frame, unitsOf } from './frame';
-import type { Answer, FromWorker, Question, Source, Status, ToWorker, Wanted } from './messages';
+import type { Answer, Certainty, FromWorker, Question, Source, Status, ToWorker, Wanted } from './messages';
+import { DecodeError } from './module';
+import { type Asked, Questions } from './questions';
 import { StaticStream, openStream } from './static_stream';
 import { Service } from './service';
 import { ServedView } from './served_view';
@@ -61,7 +62,10 @@ class Session {
   private edgesWanted = false;
   private wake: (() => void) | null = null;
 
-  constructor(private readonly module: WebAssembly.Module, private readonly source: Source, private readonly mostVertices: number) {
+  constructor(
+    private readonly module: WebAssembly.Module, private readonly source: Source, private readonly mostVertices: number,
+    private readonly folder: string,
+  ) {
     this.still = new StaticStream(module, { error: 0, mostVertices });
   }
 
@@ -101,7 +105,7 @@ class Session {
       if (!this.current.hasMesh || this.frame === null) {
         throw new Problem('Nothing is there yet', 'Wait until the first triangles have arrived.');
       }
-      const answer = this.served === null ? this.answer(question, this.frame) : await this.served.answer(question, this.frame);
+      const answer = await (this.served === null ? this.answer(question, this.frame) : this.served.answer(question, this.frame));
       say({ kind: 'answer', ticket, answer });
     } catch (error) {
       say({ kind: 'refused', ticket, message: (error as Error).message });
@@ -183,17 +187,10 @@ class Session {
     } catch { /* Text that is no JSON tells nothing. */ }
     const units = unitsOf(metadata);
     this.told = toldBy(metadata);
-    this.describe(decoder);
+    decoder.describe(this.told.ground);
     const earth = earthOf(decoder, this.told, units);
     this.frame = new Frame(facts, units, earth);
     say({ kind: 'terrain', facts, units, earth, metadata, name });
-  }
-
-  /** Tells a decoder what the metadata say. */
-  private describe(decoder: Decoder): void {
-    const { error, window, levels, splits } = this.told.request;
-    const isAll = error === undefined && window === undefined && levels === undefined && splits === undefined;
-    decoder.describe(this.told.ground, this.told.freeOfVoids, isAll && decoder.isComplete && this.served === null);
   }
 
   /** What is certified of the mesh that is there. */
@@ -249,27 +246,48 @@ class Session {
     this.drawingTook = this.lastDrawn - begin;
   }
 
-  /** Answers from the mesh that is there, within its certificate: all numbers are the engine's. */
-  private answer(question: Question, frame: Frame): Answer {
+  private questions: Promise<Questions> | null = null;
+
+  /** The module of questions, which comes when something is asked; one that could not be had is asked for again. */
+  private fetchQuestions(): Promise<Questions> {
+    const coming = this.questions ??= moduleAt(this.folder, 'questions.wasm').then((module) => new Questions(module));
+    coming.catch(() => { this.questions = null; });
+    return coming;
+  }
+
+  /** What is asked at places of the mesh that is there. */
+  private askedAt(places: readonly MapPosition[]): Asked & { certainty: Certainty } {
     const decoder = this.current;
-    this.describe(decoder);
+    decoder.describe(this.told.ground);
+    const { error, window, levels, splits } = this.told.request;
+    const isAll = error === undefined && window === undefined && levels === undefined && splits === undefined;
+    const certificate = certifiedAt(this.certified, places);
+    const isCertified = certificate.deviation < decoder.certificateByRelief.deviation;
+    return {
+      decoder, ground: this.told.ground, freeOfVoids: this.told.freeOfVoids, isWhole: isAll && decoder.isComplete,
+      certificate: isCertified ? certificate : null,
+      certainty: { ...certificate, of: 'mesh', isExact: isCertified && certificate.deviation === 0 },
+    };
+  }
+
+  /** Answers from the mesh that is there, within its certificate: all numbers are the engine's. */
+  private async answer(question: Question, frame: Frame): Promise<Answer> {
     if (question.kind === 'viewshed') {
       throw new Problem('Nobody can be asked', 'A viewshed needs a service; this terrain comes from a file.');
     }
-    const places = question.kind === 'height' ? [question.at] : [question.from, question.to];
-    const certificate = certifiedAt(this.certified, places);
-    const isCertified = certificate.deviation < decoder.certificateByRelief.deviation;
-    const certainty = { ...certificate, of: 'mesh' as const, isExact: isCertified && certificate.deviation === 0 };
+    const questions = await this.fetchQuestions();
+    // The mesh may have grown while the module came: the question is of the mesh of now.
+    const { certainty, ...asked } = this.askedAt(question.kind === 'height' ? [question.at] : [question.from, question.to]);
     if (question.kind === 'height') {
-      return { kind: 'height', at: question.at, located: decoder.locate(question.at, isCertified), certainty };
+      return { kind: 'height', at: question.at, located: questions.locate(asked, question.at), certainty };
     }
     const { from, to } = question;
-    this.checkLine(decoder, frame, from, to);
-    const profile = { ...decoder.profile(from, to, isCertified), lengths: frame.earth.lengths };
+    this.checkLine(asked.decoder, frame, from, to);
+    const profile = { ...questions.profile(asked, from, to), lengths: frame.earth.lengths };
     if (question.kind === 'profile') return { kind: 'profile', from, to, profile, certainty };
     const { request } = question;
-    const sight = decoder.sight(
-      from, request.observerHeight / frame.scaleZ, to, request.targetHeight / frame.scaleZ, request.frequency, isCertified);
+    const sight = questions.sight(
+      asked, from, request.observerHeight / frame.scaleZ, to, request.targetHeight / frame.scaleZ, request.frequency);
     return { kind: 'sight', from, to, request, sight, profile, certainty };
   }
 
@@ -294,16 +312,24 @@ function nameOf(source: Source): string {
   return last.replace(/\.(ptins|pts)$/, '') || 'Terrain';
 }
 
+/** A module of the viewer, which lies beside the page. */
+async function moduleAt(folder: string, name: string): Promise<WebAssembly.Module> {
+  const fetched = await fetch(new URL(name, folder)).catch(() => null);
+  if (fetched === null) {
+    throw new Problem('The viewer cannot be reached', `A part of it (${name}) did not come: the connection to the host broke, or there is none.`);
+  }
+  if (!fetched.ok) throw new Problem('The viewer is not whole', `A part of it (${name}) does not lie beside it.`);
+  return WebAssembly.compile(await fetched.arrayBuffer());
+}
+
 let session: Promise<Session> | null = null;
 
 async function open(message: Extract<ToWorker, { kind: 'open' }>): Promise<Session> {
   // The stream is asked for while the decoder still comes.
   const opening = message.source.kind === 'stream' ? openStream(message.source.url) : null;
   opening?.catch(() => undefined);
-  const fetched = await fetch(message.decoder);
-  if (!fetched.ok) throw new Problem('The viewer is not whole', 'Its decoder (decoder.wasm) does not lie beside it.');
-  const module = await WebAssembly.compile(await fetched.arrayBuffer());
-  const made = new Session(module, message.source, message.mostVertices);
+  const module = await moduleAt(message.folder, 'decoder.wasm');
+  const made = new Session(module, message.source, message.mostVertices, message.folder);
   made.run(opening).catch((error: unknown) => { tell(error, true); });
   return made;
 }

@@ -4,7 +4,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { DecodeError, Decoder } from '../src/decoder';
+import { Decoder } from '../src/decoder';
+import { DecodeError } from '../src/module';
 import { decoded, decoderModule, file, ptin, terrain, trianglesOf, trianglesOfPly } from './support';
 
 const module = decoderModule();

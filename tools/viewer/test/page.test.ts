@@ -134,6 +134,30 @@ test('at full detail a click is exact', async () => {
   await page.context().close();
 });
 
+test('what answers questions comes with the first of them, once, and again where it did not come', async () => {
+  let fetched = 0;
+  const server = await host(site, { answer: (_, response, path) => {
+    if (!path.endsWith('/questions.wasm') || ++fetched > 1) return false;
+    response.writeHead(404).end('not here');
+    return true;
+  } });
+  const { page } = await opened(server.url);
+  await complete(page);
+  assert.equal(fetched, 0, 'nothing is asked yet');
+  await page.mouse.click(640, 380);
+  await page.waitForFunction(() => /questions\.wasm/.test(document.getElementById('toast')!.textContent!));
+  assert.ok(await page.isHidden('#trouble'), 'the terrain stays as it is');
+  for (const x of [640, 600]) {
+    await page.mouse.click(x, 380);
+    await page.waitForFunction(() => document.getElementById('answer')!.dataset.height !== undefined);
+    await page.keyboard.press('Escape');
+    await page.evaluate(() => { delete document.getElementById('answer')!.dataset.height; });
+  }
+  assert.equal(fetched, 2);
+  await page.context().close();
+  await server.close();
+});
+
 test('triangles, isolines and colours change the picture', async () => {
   const { page, faults } = await opened(`${fast.url}#error=20`);
   await complete(page);

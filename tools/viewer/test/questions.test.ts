@@ -9,30 +9,39 @@ import type { MapPosition } from '../src/answers';
 import { Decoder } from '../src/decoder';
 import { type Earth, type Told, earthOf, toldBy } from '../src/earth';
 import { unitsOf } from '../src/frame';
-import { decoded, decoderModule, file, made, ptin, terrain } from './support';
+import { DecodeError } from '../src/module';
+import { type Asked, Questions } from '../src/questions';
+import { decoded, decoderModule, file, made, ptin, questionsModule, terrain } from './support';
 
 const error = '5';
+const questions = new Questions(questionsModule());
 
 interface Shown {
   store: string;
   decoder: Decoder;
+  /** Within the stream's certificate. */
+  asked: Asked;
   told: Told;
   earth: Earth;
   /** A place of the terrain, and a little beyond. */
   place: (i: number) => MapPosition;
 }
 
+function askedOf(decoder: Decoder, told: Told): Asked {
+  return { decoder, ground: told.ground, freeOfVoids: told.freeOfVoids, certificate: decoder.certificate, isWhole: false };
+}
+
 function shown(store: string, streamed: string): Shown {
   const decoder = decoded(decoderModule(), readFileSync(streamed));
   const metadata: unknown = JSON.parse(decoder.metadata);
   const told = toldBy(metadata);
-  decoder.describe(told.ground, told.freeOfVoids, false);
+  decoder.describe(told.ground);
   const { facts } = decoder;
   const share = (n: number): number => (n * 0.6180339887498949) % 1;
   const x = facts.originX + facts.stepX * facts.minX, y = facts.originY + facts.stepY * facts.minY;
   const width = facts.stepX * (facts.maxX - facts.minX), depth = facts.stepY * (facts.maxY - facts.minY);
   return {
-    store, decoder, told, earth: earthOf(decoder, told, unitsOf(metadata)),
+    store, decoder, asked: askedOf(decoder, told), told, earth: earthOf(decoder, told, unitsOf(metadata)),
     place: (i) => ({
       x: Number((x + (1.02 * share(i) - 0.01) * width).toPrecision(9)), y: Number((y + (1.02 * share(i * 7.31) - 0.01) * depth).toPrecision(9)),
     }),
@@ -50,7 +59,7 @@ const terrains: Array<[string, () => Shown]> = [
 
 for (const [name, of] of terrains) {
   const t = of();
-  const { decoder, store, place } = t;
+  const { asked, decoder, store, place } = t;
   const line = (a: MapPosition, b: MapPosition): string => `LINESTRING(${a.x} ${a.y}, ${b.x} ${b.y})`;
 
   test(`heights are those of locate at the same error: ${name}`, () => {
@@ -62,7 +71,7 @@ for (const [name, of] of terrains) {
     const told = locateAll('--error', error), exact = locateAll();
     let surface = 0;
     for (const [i, at] of places.entries()) {
-      const here = decoder.locate(at, true);
+      const here = questions.locate(asked, at);
       assert.equal(here.state, told[i].state);
       assert.equal(here.height, told[i].height);
       const full = exact[i].height;
@@ -70,7 +79,7 @@ for (const [name, of] of terrains) {
       ++surface;
       assert.ok((here.least as number) <= full && full <= (here.most as number), 'the full terrain is in the interval');
       assert.equal(here.triangle.length, 3);
-      const far = decoder.locate(at, false);
+      const far = questions.locate({ ...asked, certificate: null }, at);
       assert.ok((far.least as number) <= (here.least as number), 'without a certificate it is as wide as the relief');
     }
     assert.ok(surface > 20);
@@ -81,7 +90,7 @@ for (const [name, of] of terrains) {
       const a = place(2 * i), b = place(2 * i + 1);
       const told = (JSON.parse(ptin('profile', store, '--line', line(a, b), '--error', error, '--json')) as
         { points: Array<MapPosition & { distance: number; height: number | null }> }).points;
-      const { stations, length } = decoder.profile(a, b, true);
+      const { stations, length } = questions.profile(asked, a, b);
       const last = told[told.length - 1].distance;
       // On the ellipsoid both formulas agree to a tenth of a millimetre.
       const slack = t.earth.isDegrees ? 1e-4 : 0;
@@ -103,7 +112,7 @@ for (const [name, of] of terrains) {
       const told = JSON.parse(ptin(
         'sight', store, String(a.x), String(a.y), '40', String(b.x), String(b.y), '60', '--frequency', '450MHz', '--json')) as
         { verdict: string; length: number; clearance: { min: number; max: number } | null };
-      const here = decoder.sight(a, 40, b, 60, 450e6, true);
+      const here = questions.sight(asked, a, 40, b, 60, 450e6);
       assert.ok(Math.abs(here.length - told.length) <= 1e-3, `${here.length} for ${told.length}`);
       if (here.verdict === 'unsure') continue;
       if (here.verdict === 'undefined') {
@@ -140,4 +149,35 @@ test('a line around the Earth has no length here', () => {
   const t = terrains[1][1]();
   assert.ok(Number.isNaN(t.decoder.metresBetween({ x: 0, y: 10 }, { x: 179, y: -10 })));
   assert.ok(Math.abs(t.decoder.metresBetween({ x: 170, y: -17 }, { x: -170, y: -16 }) - 2137231.521266) < 1e-3, 'across the date line');
+});
+
+test('questions are of the mesh as it is now, of whichever decoder', () => {
+  const bytes = readFileSync(plane.stream);
+  const half = decoded(decoderModule(), bytes.subarray(0, bytes.length / 2)), whole = decoded(decoderModule(), bytes);
+  const told = toldBy(JSON.parse(whole.metadata));
+  const { place } = terrains[0][1]();
+  const heights = (decoder: Decoder, by = questions): Array<number | null> =>
+    Array.from({ length: 20 }, (_, i) => by.locate(askedOf(decoder, told), place(i)).height);
+  const coarse = heights(half), fine = heights(whole);
+  assert.notDeepEqual(coarse, fine);
+  assert.deepEqual(heights(half), coarse);
+  half.feed(bytes.subarray(bytes.length / 2));
+  assert.ok(half.isComplete);
+  assert.deepEqual(heights(half), fine, 'what came since counts');
+  assert.deepEqual(heights(whole, new Questions(questionsModule())), fine, 'another instance says the same');
+});
+
+test('a question that is refused hurts no other', () => {
+  const { asked, decoder, place } = terrains[0][1]();
+  const before = questions.locate(asked, place(3));
+  const { vertexCount } = decoder.mesh;
+  assert.throws(() => { questions.profile(asked, place(3), place(3)); }, (error: unknown) => {
+    assert.ok(error instanceof DecodeError);
+    assert.equal(error.code, 'invalid_argument');
+    assert.match(error.message, /no length/);
+    return true;
+  });
+  assert.throws(() => { questions.locate(asked, { x: NaN, y: 0 }); }, DecodeError);
+  assert.deepEqual(questions.locate(asked, place(3)), before);
+  assert.equal(decoder.mesh.vertexCount, vertexCount);
 });

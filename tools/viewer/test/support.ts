@@ -32,9 +32,11 @@ export function terrain(name: string, ...options: string[]): { store: string; st
   return { store, stream };
 }
 
-export function decoderModule(): WebAssembly.Module {
-  return new WebAssembly.Module(readFileSync(join(assets, 'decoder.wasm')));
+function moduleOf(name: string): WebAssembly.Module {
+  return new WebAssembly.Module(readFileSync(join(assets, name)));
 }
+export const decoderModule = (): WebAssembly.Module => moduleOf('decoder.wasm');
+export const questionsModule = (): WebAssembly.Module => moduleOf('questions.wasm');
 
 /** A decoder that was fed `bytes`, in pieces of a size. */
 export function decoded(module: WebAssembly.Module, bytes: Uint8Array, piece = bytes.length): Decoder {

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/viewer/decoder/module.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <typeinfo>
+
+#include "engine/error.h"
+
+/// Throws in the host. `code`: place in ErrorCode.
+extern "C" __attribute__((import_module("host"), import_name("fail"), noreturn)) void host_fail(
+    std::uint32_t code, const char* text, std::size_t bytes);
+
+namespace {
+
+[[noreturn]] void fail(ptin::ErrorCode code, std::string_view text) {
+  host_fail(static_cast<std::uint32_t>(code), text.data(), text.size());
+}
+
+}  // namespace
+
+// NOLINTBEGIN(bugprone-reserved-identifier): the names that the compiler calls.
+extern "C" void* __cxa_allocate_exception(std::size_t bytes) noexcept {
+  if (void* memory = std::malloc(bytes)) return memory;
+  fail(ptin::ErrorCode::resource_exhausted, "there is no memory left");
+}
+
+extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void (*)(void*)) {
+  if (*type == typeid(ptin::Error)) {
+    const auto* error = static_cast<const ptin::Error*>(thrown);
+    fail(error->code(), error->what());
+  }
+  fail(ptin::ErrorCode::internal, "the decoder failed in a way that it does not know");
+}
+extern "C" [[noreturn]] void __cxa_pure_virtual() { __builtin_trap(); }
+
+/// Debian's divisions of 128 bits (libclang-rt) are compiled to watch their stack by these.
+extern "C" {
+std::uintptr_t __stack_chk_guard = 0x5dec0de5;
+[[noreturn]] void __stack_chk_fail() { __builtin_trap(); }
+}
+// NOLINTEND(bugprone-reserved-identifier)
+
+void* operator new(std::size_t bytes) {
+  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  fail(ptin::ErrorCode::resource_exhausted,
+       "the browser gives no more memory; open the stream at a larger error");
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
