@@ -27,14 +27,22 @@ std::string code_of(const OGRSpatialReference& srs, const char* node) {
   return std::string(authority).append(":").append(code);
 }
 
-void add_vertical(const OGRSpatialReference& srs, CrsFacts& facts) {
-  const bool compound = srs.IsCompound() != 0;
-  if (!compound && srs.GetAxesCount() < 3) return;
-  facts.vertical_name = compound ? text_or_empty(srs.GetAttrValue("VERT_CS")) : facts.name;
-  facts.vertical_code = compound ? code_of(srs, "VERT_CS") : facts.code;
+void add_compound(const OGRSpatialReference& srs, CrsFacts& facts) {
+  facts.vertical_name = text_or_empty(srs.GetAttrValue("VERT_CS"));
+  facts.vertical_code = code_of(srs, "VERT_CS");
   const char* unit = nullptr;
-  const double metres = srs.GetTargetLinearUnits(compound ? "VERT_CS" : nullptr, &unit);
+  const double metres = srs.GetTargetLinearUnits("VERT_CS", &unit);
   facts.vertical_unit = unit_called(text_or_empty(unit), metres);
+}
+
+/// Of a CRS whose third axis counts heights.
+void add_third_axis(const OGRSpatialReference& srs, CrsFacts& facts) {
+  facts.has_third_axis = true;
+  facts.vertical_name = srs.IsLocal() != 0 ? facts.name : "ellipsoidal height";
+  facts.vertical_code = facts.code;
+  double metres = 0.0;
+  if (srs.GetAxis(nullptr, 2, nullptr, &metres) != nullptr)
+    facts.vertical_unit = unit_called("", metres);
 }
 
 }  // namespace
@@ -47,13 +55,19 @@ CrsFacts crs_facts(const std::string& wkt) {
   OGRSpatialReference srs;
   if (srs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return facts;
   facts.geographic = srs.IsGeographic() != 0;
+  const bool is_compound = srs.IsCompound() != 0;
   const char* node = srs.IsProjected() != 0 ? "PROJCS" : (facts.geographic ? "GEOGCS" : "LOCAL_CS");
   facts.name = text_or_empty(srs.GetAttrValue(node));
-  facts.code = code_of(srs, srs.IsCompound() != 0 ? node : nullptr);
+  if (facts.name.empty() && !is_compound) facts.name = text_or_empty(srs.GetName());
+  facts.code = code_of(srs, is_compound ? node : nullptr);
   const char* unit = nullptr;
   const double size = facts.geographic ? srs.GetAngularUnits(&unit) : srs.GetLinearUnits(&unit);
   if (unit != nullptr) facts.horizontal_unit = facts.geographic ? unit : unit_called(unit, size);
-  add_vertical(srs, facts);
+  if (is_compound) {
+    add_compound(srs, facts);
+  } else if (srs.GetAxesCount() == 3) {
+    add_third_axis(srs, facts);
+  }
   return facts;
 }
 
@@ -67,8 +81,10 @@ bool is_same_plane(const CrsFacts& a, const CrsFacts& b) {
     return a.horizontal_unit == b.horizontal_unit || a.horizontal_unit == "unknown" ||
            b.horizontal_unit == "unknown";
   }
-  of_a.StripVertical();
-  of_b.StripVertical();
+  for (OGRSpatialReference* srs : {&of_a, &of_b}) {
+    srs->StripVertical();
+    if (srs->GetAxesCount() == 3) srs->DemoteTo2D(nullptr);
+  }
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
                                  "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return of_a.IsSame(&of_b, options) != 0;

@@ -12,18 +12,24 @@
 namespace ptin {
 
 struct CrsFacts {
-  std::string wkt;            ///< WKT2 on one line; empty when unknown.
-  std::string name;           ///< Of the horizontal part.
-  std::string code;           ///< "EPSG:32611" of the horizontal part; empty when it has none.
-  std::string vertical_name;  ///< Empty when the vertical CRS is unknown.
-  std::string vertical_code;
+  std::string wkt;   ///< WKT2 on one line; empty when unknown.
+  std::string name;  ///< Of the horizontal part.
+  std::string code;  ///< "EPSG:32611" of the horizontal part; empty when it has none.
+  bool has_third_axis =
+      false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.
+  /// Of the vertical part; "ellipsoidal height" of a third axis. Empty when it is unknown.
+  std::string vertical_name;
+  std::string vertical_code;  ///< Of the vertical part, or of a CRS of three axes as a whole.
   bool geographic = false;
   std::string horizontal_unit = "unknown";
   std::string vertical_unit = "unknown";
 
-  /// The short form for the headers of files: the code where there is one, else the WKT.
+  /// The short form for the headers of files: the code where there is one, else the WKT. That of a
+  /// CRS of three axes tells of its heights, too.
   [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
+  /// The same of a vertical CRS; empty where there is none apart from horizontal_text().
   [[nodiscard]] std::string vertical_text() const {
+    if (has_third_axis) return {};
     return vertical_code.empty() ? vertical_name : vertical_code;
   }
 };

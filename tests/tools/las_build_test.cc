@@ -56,6 +56,7 @@ TEST(LasBuild, KnowsTheUnitOfHeightsBesideOrWithoutAVerticalCrs) {
   const auto above_ellipsoid = info_of(
       folder, {1, 1, 0, 4, 1024, 0, 1, 1, 3072, 0, 1, 32617, 4096, 0, 1, 5030, 4099, 0, 1, 9001});
   EXPECT_EQ(above_ellipsoid["units"]["height"], "metre");
+  EXPECT_EQ(above_ellipsoid["crs"]["vertical_known"], true) << above_ellipsoid["crs"];
 }
 
 // A unit that libgeotiff asks PROJ for, in a context of its own.

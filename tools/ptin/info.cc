@@ -138,6 +138,8 @@ void print_place(const StoreFile& store, const CrsFacts& crs) {
               crs.code.empty() ? "" : (" (" + crs.code + ")").c_str());
   if (crs.vertical_name.empty()) {
     std::printf("vertical   unknown; build with --vertical-crs to state it\n");
+  } else if (crs.has_third_axis) {
+    std::printf("vertical   %s, of this CRS\n", printable(crs.vertical_name).c_str());
   } else {
     std::printf("vertical   %s%s\n", printable(crs.vertical_name).c_str(),
                 crs.vertical_code.empty() ? "" : (" (" + crs.vertical_code + ")").c_str());

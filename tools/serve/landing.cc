@@ -46,7 +46,7 @@ Json terrain_json(const Collection& c) {
           {"vertices", c.terrain.store().t0().vertices.size() + c.terrain.store().record_count()},
           {"base_error", facts.base_error},
           {"crs", c.crs.horizontal_text()},
-          {"vertical_crs", c.crs.vertical_text()},
+          {"vertical_crs", c.crs.has_third_axis ? c.crs.vertical_name : c.crs.vertical_text()},
           {"units", {{"horizontal", c.crs.horizontal_unit}, {"height", c.crs.vertical_unit}}},
           {"geographic", c.crs.geographic},
           {"free_of_voids", facts.free_of_voids},

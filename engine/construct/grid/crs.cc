@@ -297,8 +297,12 @@ bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b) {
   if (!read(wkt_a, a) || !read(wkt_b, b)) {
     return false;
   }
-  a.StripVertical();
-  b.StripVertical();
+  for (OGRSpatialReference* srs : {&a, &b}) {
+    srs->StripVertical();
+    if (srs->GetAxesCount() == 3) {
+      srs->DemoteTo2D(nullptr);
+    }
+  }
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
                                  "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return a.IsSame(&b, options) != 0;
