@@ -100,7 +100,7 @@ TEST(HttpAdmissionConcurrency, ComputesNothingForWhoLeftWhileWaiting) {
   service.is_released = true;
 }
 
-/// As behind a proxy that is trusted: each client has its turn, whoever asked more.
+/// Each client behind a trusted proxy has its turn, whoever asked more.
 TEST(HttpAdmissionConcurrency, DisplacesWhoWaitsMostForWhoIsNew) {
   MadeService service;
   Limits limits = small_limits();
