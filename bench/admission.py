@@ -142,7 +142,7 @@ def measure(service, place, seconds, start):
     for job in asked:
         job.join()
     stop.set()
-    time.sleep(12 if start else 2)  # What was asked ends.
+    time.sleep(12 if start else 2)  # Questions that were asked end meanwhile.
     return found, counts, (before, most, service.memory())
 
 

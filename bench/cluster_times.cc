@@ -32,7 +32,7 @@ namespace {
 using ptin::Task;
 using ptin::TaskResult;
 
-/// Of the processor, by all threads.
+/// Seconds of the processor, by all threads.
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class Stopwatch {

@@ -49,9 +49,9 @@ class StarPredicate {
   StarPredicate& operator=(const StarPredicate&) = default;
   virtual ~StarPredicate() = default;
   [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
-  /// Of a test that is true of a box where the box has a point of one fixed set: a box around that set.
-  /// So of parts into which a box is cut, each grown by a unit, the test is true of one at least, where
-  /// it is true of the whole. Of another test, and where nothing is known: the box of everything.
+  /// A box around a fixed set of points, where this test is true of a box that has one of them.
+  /// Where it is true of a box that is cut, it is true of one of the parts at least, each grown by
+  /// a unit. Other tests, and those of which nothing is known, have the box of everything.
   [[nodiscard]] virtual GridBox reach() const noexcept {
     return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   }

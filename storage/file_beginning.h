@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a file that is none of ours is, as far as its first bytes tell.
+// The kind of a file that is none of ours, as far as its first bytes tell.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace ptin {
 
-/// So many first bytes are looked at.
+/// The number of first bytes that are looked at.
 inline constexpr std::size_t kBeginningBytes = 64;
 
 /// "it begins like a TIFF, as GeoTIFFs do; `ptin build` makes a .ptin file of it", "it is empty": what

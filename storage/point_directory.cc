@@ -179,7 +179,7 @@ void PointDirectory::find_in(const StarFilter& filter, std::vector<DirectoryPage
   std::vector<DirectoryPage> named;
   root.cells.for_each(filter.box, [&](const DirectoryCells::Cell& cell) {
     read_node(root, cell, filter, counters, [&](const DirectoryPage& page) {
-      // What the stars have in common with the reach lies in some cell; regions are rounded outwards.
+      // The part of the stars within the reach lies in some cell; regions are rounded outwards.
       const StarAttributes cut{grown(page.box), kAllHeights, short_value(page.error_max),
                                -kInfinity};
       if (meets(page.box, filter.box) && (filter.also == nullptr || filter.also->may_hold(cut))) {

@@ -75,7 +75,7 @@ class PointDirectory {
             std::span<std::vector<DirectoryPage>> found, IoCounters& counters) const;
 
   /// Appends the pages that may hold what the filter asks for, each once, ascending, with the box of
-  /// what lies in the cells that the filter's box meets. Of heights nothing is known here: those of
+  /// what lies in the cells that the filter's box meets. Heights are not known here: those of
   /// the filter are not asked, nor its steps.
   /// REQUIRES: filter.also is null, or its reach is known and lies within filter.box.
   /// Cost: as above, of those cells.

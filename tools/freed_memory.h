@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the allocator does with memory that a build has freed.
+// The allocator's treatment of memory that a build has freed.
 #pragma once
 
 #include "engine/construct/build_plan.h"

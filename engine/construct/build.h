@@ -39,7 +39,7 @@ struct BuildResources {
   BuildObserver* observer = nullptr;  ///< Who is told of the work; null: nobody. Borrowed.
 };
 
-/// Of a build that is resumed though its output was complete already, points and TINs have no counts but
+/// A build that is resumed though its output was complete has no counts of points and TINs but
 /// those that the file tells.
 struct BuildReport {
   std::uint64_t source_samples = 0;  ///< With a height; of points and TINs, distinct positions.
@@ -48,15 +48,15 @@ struct BuildReport {
   /// By their class, place or nodata, withheld, or without a height; TINs: in no triangle.
   std::uint64_t left_out_points = 0;
   std::vector<std::string> empty_inputs;  ///< Points: files without any, not even one left out.
-  SourceWarnings warnings;                ///< Of the inputs and the lines beside them.
+  SourceWarnings warnings;                ///< Those of the inputs, and of the lines.
   std::uint64_t left_out_triangles = 0;   ///< TINs: hidden, or with a corner of no height.
   std::uint64_t void_triangles = 0;       ///< TINs: of the full TIN, between surface and hull.
   std::uint64_t merged_points = 0;        ///< Points less the positions that they fell on.
-  double largest_shift_plan = 0.0;        ///< By which snapping moved one, CRS units.
-  double largest_shift_height = 0.0;      ///< By which merging moved one, height's unit.
+  double largest_shift_plan = 0.0;        ///< Distance that snapping moved one, CRS units.
+  double largest_shift_height = 0.0;      ///< Distance that merging moved one, height's unit.
   double height_quantum = 0.0;            ///< Points: the smallest step between heights.
   double height_rounding = 0.0;           ///< Bound of what storing moved one by, height's unit.
-  std::uint64_t vertices = 0;             ///< Of the full TIN.
+  std::uint64_t vertices = 0;             ///< Vertices of the full TIN.
   std::uint64_t records = 0;              ///< Written.
   std::uint64_t t0_vertices = 0;
   std::uint16_t max_rank = 0;  ///< Chains of splits are at most one longer.

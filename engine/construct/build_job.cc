@@ -26,7 +26,7 @@ namespace {
 /// Of the temporary files: to be raised when their bytes mean something else.
 constexpr int kTemporaryFormat = 8;
 
-/// Of a line of the manifest: the sorted source that an earlier line names is damaged.
+/// The key of a line of the manifest: the sorted source that an earlier line names is damaged.
 constexpr const char* kIsForgotten = "source_is_damaged";
 
 /// The number of a file on its disk, which stays the same when it gets another name; none when
@@ -85,7 +85,7 @@ Error with_advice(const Error& error, const std::string& folder, const char* adv
           error.context()};
 }
 
-/// What is said where work is kept. It stays of use where a sorted source is damaged.
+/// The error, told with the work that is kept. This stays of use where a sorted source is damaged.
 Error error_with_work(Workspace& workspace, const Job& job, const Error& error) {
   if (!is_lost_sorted_source(error, workspace.temporary_folder())) {
     const bool is_over = job.inputs_changed || (error.code() == ErrorCode::corruption &&
@@ -305,7 +305,7 @@ HierarchyOptions hierarchy_options(const Job& job, const TiledSource& source,
 namespace {
 
 /// Refuses to publish what was read of inputs that are others now: what is in the file may be of both.
-/// What can be read only once is not looked at again.
+/// Inputs that can be read only once are not looked at again.
 void require_unchanged(Job& job) {
   const std::vector<std::string> all = all_inputs(job.inputs, job.options);
   if (std::any_of(all.begin(), all.end(), can_be_read_once_only)) {

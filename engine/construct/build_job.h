@@ -126,7 +126,7 @@ struct KeptIndex {
   std::optional<ArrayFileFacts> facts;  ///< None where the build had not got so far.
   bool is_sound = false;                ///< Nobody has noted that the source is damaged.
 };
-/// What was noted under `key`.
+/// The note under `key`.
 [[nodiscard]] KeptIndex kept_index(const Workspace& workspace, const std::string& key);
 /// Notes that the sorted source is damaged: kept_index() of a resumed build has none.
 /// @throws Error io_error, resource_exhausted

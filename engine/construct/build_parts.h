@@ -22,10 +22,10 @@ namespace ptin {
 
 enum class PartsPhase : std::uint8_t { kCollapse, kJoin, kTighten };
 
-/// What a build in parts begins with.
+/// The beginning of a build in parts.
 struct BegunParts {
-  std::string note;         ///< That each job is given, one line of text.
-  SourceWarnings warnings;  ///< As BuildReport::warnings.
+  std::string note;         ///< One line of text that each job is given.
+  SourceWarnings warnings;  ///< Those of BuildReport::warnings.
 };
 
 /// Reads the source (points and TINs are sorted) and leaves the folder of the build for the jobs.

@@ -12,11 +12,11 @@ namespace ptin {
 
 struct GroundFacts {
   bool geographic = false;            ///< Map units are angles.
-  double semi_major = 6378137.0;      ///< Of the ellipsoid, metres.
+  double semi_major = 6378137.0;      ///< Semi-major axis of the ellipsoid, metres.
   double inverse_flattening = 0.0;    ///< 0: a sphere.
-  double radians_per_map_unit = 0.0;  ///< Geographic.
-  double metres_per_map_unit = 1.0;   ///< Of a plane. Where nobody knows it, 1.
-  double metres_per_height = 1.0;     ///< Where nobody knows it, that of the plane, or 1.
+  double radians_per_map_unit = 0.0;  ///< Size of a map unit that is an angle.
+  double metres_per_map_unit = 1.0;   ///< Size of a plane's map unit; 1 where nobody knows it.
+  double metres_per_height = 1.0;     ///< Where nobody knows it: the plane's, or 1.
 };
 
 /// Metres along an ellipsoid between two positions, x (longitude) and y (latitude) in degrees.

@@ -138,7 +138,7 @@ TEST(Resume, ReadsPointsAndTrianglesNoMoreOnceTheyAreSorted) {
   }
 }
 
-/// What a build that goes on with this one says; "" where it ends well.
+/// The error of a build that goes on with this one; "" where it ends well.
 std::string told_of_resuming(const InterruptibleBuild& interrupted) {
   try {
     build({interrupted.input()}, interrupted.output(), interrupted.options(), resuming());
@@ -149,7 +149,7 @@ std::string told_of_resuming(const InterruptibleBuild& interrupted) {
   }
 }
 
-/// What is seen when a build goes on is sorted again at once; a changed bucket is met later.
+/// Damage that is seen when a build goes on is mended at once; a changed bucket is met later.
 TEST(Resume, SortsPointsAndTrianglesAgainThatAreDamagedOrGone) {
   for (const std::string name :
        {"points-0", "points.index", "tin.surface", "tin.voids", "tin.places", "tin.index"}) {
@@ -168,7 +168,7 @@ TEST(Resume, SortsPointsAndTrianglesAgainThatAreDamagedOrGone) {
   }
 }
 
-/// Where nothing but its content tells that a source is another one.
+/// A source of which nothing but the content tells that it is another one.
 TEST(Resume, SaysThatASourceThatIsSortedAgainIsAnotherOne) {
   const InterruptibleBuild interrupted(SourceKind::kPoints);
   stop_in(interrupted, "collapsing");

@@ -64,7 +64,7 @@ struct WithDirectory {
   }
 };
 
-/// Bytes of the opening of a large file: it ends with the cells of the directory. Of a small file nodes
+/// Bytes of the opening of a large file: it ends with the cells of the directory. Nodes of a small one
 /// would come with it.
 inline std::size_t front_with_directory(const std::string& path) {
   for (const SectionInfo& s : Terrain::open(path).store().sections()) {

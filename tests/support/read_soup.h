@@ -45,7 +45,7 @@ class SoupCollector final : public TinFileSink {
     }
     soup_.vertices.push_back(p);
   }
-  /// Of quads, which are cut when the heights are known, as they are.
+  /// Adds a face. Quads stay whole: they are cut when the heights are known.
   void add_face(std::span<const std::int64_t> ids) override {
     if (ids.size() == 4) {
       quads_.push_back({ids[0], ids[1], ids[2], ids[3]});

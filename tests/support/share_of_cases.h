@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How many of their cases the tests look at that repeat one thing very often, or on several terrains.
+// The share of their cases that tests look at which repeat one thing often, or on several terrains.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ inline bool wants_all_cases() { return std::getenv("PTIN_ALL_CASES") != nullptr;
 inline int share_of_cases(int n) { return wants_all_cases() ? 1 : n; }
 
 /// All cases; under the sanitizers, where each takes four times as long, every second one, and the last.
-/// What the code does with memory and numbers is seen by those; `release` looks at each.
+/// Faults of memory and of numbers show in those; `release` looks at each.
 template <class Case>
 std::vector<Case> some_of(std::vector<Case> cases) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -137,7 +137,7 @@ TEST_F(HttpAdmissionConcurrency, ComputesNothingForWhoLeftWhileWaiting) {
   }
 }
 
-/// As behind a proxy that is trusted: each client has its turn, whoever asked more.
+/// Each client behind a trusted proxy has its turn, whoever asked more.
 TEST_F(HttpAdmissionConcurrency, DisplacesWhoWaitsMostForWhoIsNew) {
   limits.threads = 1;
   limits.waiting = 3;

@@ -140,7 +140,7 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
   ask({"build", file("dem.tif"), "-o", store, "-q"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
-  // What a text and a raster are warned of has a line, a count or neither.
+  // Warnings of a text and of a raster have a line, a count or neither.
   tools::testing::write_file(file("odd.csv"), "x,y,z [smoot]\n0,0,1\n9,0,2\n0,9,3\n");
   ask({"build", file("odd.csv"), "-o", file("odd.ptin")});
   ask({"build", "--discard", "-o", file("none.ptin"), "-q"}, 1);

@@ -94,7 +94,7 @@ class MadeService : public http::Service {
   }
 
  private:
-  /// Of 300 000 bytes, whose first piece comes when it is released.
+  /// A file of 300 000 bytes, whose first piece comes when it is released.
   Response file() {
     Response response;
     response.content_type = "application/octet-stream";

@@ -21,7 +21,7 @@ struct Outcome {
   int status = -1;  ///< Exit status; 128 + signal when a signal ended it.
   std::string out;
   std::string err;
-  /// Of a process that was started: the processor time that it took.
+  /// The processor time that a started process took.
   std::chrono::milliseconds worked{0};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What questions of the command line have in common: places that miss the terrain, geometries of
+// Habits that all questions of the command line share: places that miss the terrain, geometries of
 // another CRS, levels that nothing crosses, the words of a report.
 #include <algorithm>
 #include <cmath>

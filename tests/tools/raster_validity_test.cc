@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What masks samples of a raster out, beside samples of every type: alpha bands, masks, nodata values
+// Masks of samples of a raster, beside samples of every type: alpha bands, masks, nodata values
 // in other digits than the type has. `ptin verify --against` reads the same by code of its own.
 #include <cfloat>
 #include <string>

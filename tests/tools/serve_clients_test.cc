@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What clients that others wrote send, byte for byte where it matters: Google's and jQuery's, axios,
+// Requests of others' clients, byte for byte where it matters: Google's and jQuery's, axios,
 // GDAL's /vsicurl/, curl and wget.
 #include <cmath>
 #include <string>
@@ -21,7 +21,7 @@ class ServeClients : public Serve {
   static constexpr const char* kAt = "34.34,-118.3";
 };
 
-/// As Google's client for Node writes 512 positions: `%2C` and `%7C` between the numbers.
+/// Positions as Google's client for Node writes 512 of them: `%2C` and `%7C` between the numbers.
 std::string many_locations(int count) {
   std::string text;
   for (int i = 0; i < count; ++i) {

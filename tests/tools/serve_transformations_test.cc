@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What CRSs that are new to the service may cost it.
+// The cost of CRSs that are new to the service.
 #include <chrono>
 
 #include <gtest/gtest.h>

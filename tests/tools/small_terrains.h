@@ -31,7 +31,7 @@ struct RasterRecipe {
   bool columns_go_west = false;  ///< The first column is the easternmost: a negative pixel width.
   int epsg = 32611;
   std::string type = "Float32";       ///< By GDAL's name.
-  std::string unit;                   ///< Of the heights, as the band declares it.
+  std::string unit;                   ///< The unit of the heights, as the band declares it.
   std::vector<std::string> creation;  ///< Options of GDAL's driver.
 };
 /// Writes it as a GeoTIFF.
@@ -41,7 +41,7 @@ void make_raster(const std::string& path, const RasterRecipe& recipe);
 
 /// A small real terrain of tests/data.
 [[nodiscard]] std::string test_data(const std::string& name);
-/// The same, built into `folder`; returns the store's path. Built once a process, and copied.
+/// The path of the store of such a terrain in `folder`. It is built once a process, and copied.
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name);
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name,
                                 const std::string& store_name);

@@ -61,7 +61,7 @@ Facets read_stl(const std::string& path) {
   return facets_of(triangles);
 }
 
-/// With z up again.
+/// The facets of a GLB, with z up again.
 Facets read_solid_glb(const std::string& path) {
   const testing::ReadMesh mesh = testing::read_glb(read_file(path));
   Facets facets;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What an output format has a field for is stated: units, CRS, vertical CRS; read back by GDAL, or from
+// Facts that a format has fields for: units, CRS, vertical CRS; read back by GDAL, or from
 // the text of the file.
 #include <map>
 #include <string>

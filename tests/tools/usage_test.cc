@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the command line says to people who wrote it wrongly, and its help.
+// Words of the command line to people who wrote it wrongly, and its help.
 #include <sstream>
 
 #include <gtest/gtest.h>

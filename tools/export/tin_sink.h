@@ -19,11 +19,11 @@ struct SinkTarget {
   std::string path;
   bool overwrite = false;
   CrsFacts crs;
-  LocalFrame frame;                                      ///< Of STL.
-  std::optional<double> solid_base;                      ///< Of STL: it is a solid (make_solid).
-  bool slope_in_percent = false;                         ///< Of the field `slope`: else in degrees.
-  std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< What PatchMaker::make() may take.
-  std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< For an index of features.
+  LocalFrame frame;                                      ///< The frame of STL.
+  std::optional<double> solid_base;                      ///< An STL's, if solid (make_solid).
+  bool slope_in_percent = false;                         ///< The field `slope`; else degrees.
+  std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< The most for PatchMaker::make().
+  std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< Bytes for an index of features.
   std::uint64_t most_triangles = 0;                      ///< At most; tells the size of that index.
 };
 

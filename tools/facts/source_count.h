@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the build counted of its source, and what follows from it.
+// Counts that the build made of its source, and what follows from them.
 #pragma once
 
 #include <cstdint>

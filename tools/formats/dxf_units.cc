@@ -19,7 +19,7 @@ namespace ptin::tools {
 namespace {
 
 struct UnitCode {
-  std::string_view name;  ///< As height_unit_named() has it.
+  std::string_view name;  ///< The name of height_unit_named().
   DxfUnits units;
 };
 

@@ -14,7 +14,7 @@ struct DxfUnits {
   int measurement = 0;  ///< $MEASUREMENT: 1 metric, 0 English.
 };
 
-/// Of the plane of a CRS; none where it is unknown or degrees, which no drawing has.
+/// The units of a CRS's plane; none where they are unknown or degrees, which no drawing has.
 [[nodiscard]] DxfUnits dxf_units(const CrsFacts& crs);
 
 /// The header that GDAL's DXF driver begins a drawing with, with the units of a CRS in it, as a file in
@@ -31,7 +31,7 @@ class DxfHeader {
 
  private:
   std::string path_;
-  std::string text_;  ///< What the file is made of.
+  std::string text_;  ///< The text that the file is made of.
 };
 
 }  // namespace ptin::tools

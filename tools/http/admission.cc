@@ -42,7 +42,7 @@ const char* name_of(Lane lane) noexcept {
   return kNames[index_of(lane)];
 }
 
-/// What waits in a lane: each client's tickets in their order, and the clients by turns.
+/// The tickets that wait in a lane: each client's in their order, and the clients by turns.
 class Line {
  public:
   void add(std::shared_ptr<Ticket> ticket) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Who is computed next: lanes for questions of different cost, turns for the clients of each, and
+// The order of computing: lanes for questions of different cost, turns for the clients of each, and
 // the memory that all of them borrow.
 #pragma once
 
@@ -20,12 +20,12 @@
 
 namespace ptin::http {
 
-/// What a question costs. Each lane has threads that no other lane takes, so that a cheap question
+/// The cost of a question. Each lane has threads that no other lane takes, so that a cheap question
 /// never waits for the end of a dear one.
 enum class Lane : std::uint8_t {
   kPoint,  ///< Some pages: heights at places, what is known of a terrain.
   kTile,   ///< A window of bounded size, or a line.
-  kSweep,  ///< What may look at the whole terrain.
+  kSweep,  ///< A question that may look at the whole terrain.
   kRead    ///< A piece of a file that is sent.
 };
 inline constexpr std::size_t kLanes = 4;

@@ -25,7 +25,7 @@ struct Network {
                          const boost::asio::ip::address& address);
 
 /// The client of a request: who connects, or, where that is a trusted proxy, the last address of the
-/// header X-Forwarded-For that is none. What stands before it anybody may have written.
+/// header X-Forwarded-For that is none. Anybody may have written what stands before it.
 [[nodiscard]] boost::asio::ip::address client_of(const boost::asio::ip::address& connected,
                                                  std::string_view forwarded_for,
                                                  const std::vector<Network>& trusted);

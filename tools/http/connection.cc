@@ -297,7 +297,7 @@ void Connection::take_body(const Status& status) {
   }
 }
 
-/// Of a request that is answered, or refused, nobody reads the body any more.
+/// Lets the body go: nobody reads it once the request is answered or refused.
 void Connection::give_back_body() {
   if (request_) std::string().swap(request_->body);
   parser_.reset();

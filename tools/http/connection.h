@@ -35,7 +35,7 @@ struct ConnectionHost {
   std::uint64_t next_request = 1;
   std::uint64_t body_bytes = 0;  ///< Lent to bodies that arrive or are answered.
   std::uint64_t most_body_bytes = 0;
-  /// Of all bodies that wait for memory one goes on beyond their share: else many that have a part of
+  /// The one body that waits for memory and goes on beyond their share: else many that have a part of
   /// theirs might wait for each other.
   const void* first_body = nullptr;
   bool drains = false;  ///< No question is taken any more.
@@ -96,7 +96,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   [[nodiscard]] Problem problem_of_head(const Status& status) const;
 
   void compute();
-  /// On a thread for computing.
+  /// Runs on a thread for computing.
   void answer(const std::shared_ptr<Request>& request, const std::shared_ptr<Response>& kept,
               Clock::time_point asked);
   void look_at_the_time();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What becomes of a request until there is an answer.
+// The way of a request until there is an answer.
 #include <algorithm>
 #include <cerrno>
 #include <exception>

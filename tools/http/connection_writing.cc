@@ -18,7 +18,7 @@ namespace ptin::http {
 
 namespace {
 
-/// So much of a refused request is still read, for at most so long, before the connection closes:
+/// Bytes of a refused request that are still read, and for how long, before the connection closes:
 /// a socket that is closed while bytes wait in it resets, and the client loses the answer.
 constexpr std::uint64_t kMostDropped = std::uint64_t{1} << 20;
 constexpr std::size_t kDroppedPieceBytes = std::size_t{4} << 10;
@@ -67,7 +67,7 @@ void Connection::write_next(Status status, std::size_t bytes) {
   });
 }
 
-/// Of an answer in memory.
+/// Writes the next piece of an answer in memory.
 void Connection::write_piece() {
   const std::string_view body =
       response_.lasting_body.empty() ? response_.body : response_.lasting_body;
@@ -90,7 +90,7 @@ void Connection::wait_for_room() {
                      });
 }
 
-/// On a thread of its own lane: a disk may take its time.
+/// Runs on a thread of its own lane: a disk may take its time.
 void Connection::read_long_piece() {
   const std::uint64_t left = response_.long_body->bytes - body_written_;
   const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(left, kPieceBytes));
@@ -141,7 +141,7 @@ void Connection::end_of_answer(bool is_whole) {
   const std::chrono::duration<double> written = Clock::now() - began_writing_;
   host_.service.note({*request_, given_up_ == GivenUp::kHungUp ? nullptr : &response_, queued_,
                       computed_, was_written ? written.count() : 0.0, bytes_written_, is_whole});
-  if (!is_whole) close();  // What is being written is let go only then.
+  if (!is_whole) close();  // The answer being written is let go only then.
   response_ = {};
   request_.reset();
   head_.clear();

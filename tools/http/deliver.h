@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// From a thread that computes back to the one of connections.
+// The way back from a thread that computes to the one of connections.
 #pragma once
 
 #include <chrono>

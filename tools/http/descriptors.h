@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How many files and sockets the process may have open.
+// The files and sockets that the process may have open.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace ptin::http {
 /// @return How many there may be; where the system refuses, as many as before.
 std::size_t raise_descriptor_limit() noexcept;
 
-/// So many are open now.
+/// The number of descriptors that are open now.
 [[nodiscard]] std::size_t open_descriptors();
 
 /// The connections that descriptors are left for, beside those that the program needs itself.

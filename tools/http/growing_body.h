@@ -19,7 +19,7 @@ namespace ptin::http {
 struct GrowingBody {
   struct value_type {
     std::string text;
-    bool is_dropped = false;  ///< What arrives is not kept.
+    bool is_dropped = false;  ///< Bytes that arrive are not kept.
   };
 
   class reader {

@@ -15,14 +15,14 @@ namespace ptin::http {
 /// Every one is told to a client that goes beyond it, under its name here.
 struct Limits {
   std::size_t request_line_bytes = std::size_t{32} << 10;  ///< Beyond: 414.
-  std::size_t header_bytes = std::size_t{8} << 10;         ///< Of all header lines. Beyond: 431.
+  std::size_t header_bytes = std::size_t{8} << 10;         ///< All header lines. Beyond: 431.
   std::size_t body_bytes = std::size_t{1} << 20;           ///< Beyond: 413.
   /// Beyond, the longest idle one closes; where none is idle: 503. A client may have three quarters
   /// of them, and of the last quarter those that have less than an eighth of all.
   std::size_t connections = 1024;
   std::size_t waiting = 64;  ///< Questions that wait in each lane. Beyond: 503.
   std::size_t threads = 1;   ///< Questions of each lane that are computed at once.
-  /// Of bodies, questions and answers. Where there is none at the moment, they wait.
+  /// Memory of bodies, questions and answers, which wait where there is none at the moment.
   std::uint64_t memory_bytes = std::uint64_t{192} << 20;
 
   // Absolute: no byte that arrives makes them longer.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is known of a target that is refused, or came in part.
+// Facts of a target that is refused, or came in part.
 #pragma once
 
 #include <string>

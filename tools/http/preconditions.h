@@ -12,7 +12,7 @@
 
 namespace ptin::http {
 
-/// Of an answer that has a tag, 200 or 304: makes it a refusal of status 412 where If-Match names
+/// Makes an answer that has a tag, 200 or 304, a refusal of status 412 where If-Match names
 /// neither the tag nor its other form under gzip, or where there is no If-Match and
 /// If-Unmodified-Since is before its Last-Modified. A weak tag is never the same.
 void check_preconditions(const Request& request, Response& response);

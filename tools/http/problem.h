@@ -66,7 +66,7 @@ class Problem : public std::exception {
   std::optional<unsigned> retry_after_;
 };
 
-/// What a client wrote, within a sentence: cut behind 64 bytes, at the end of a character.
+/// A client's text as a sentence quotes it: cut behind 64 bytes, at the end of a character.
 [[nodiscard]] std::string shown(std::string_view text);
 
 /// "Not Found" of 404; "Unknown" of a status that HTTP does not name.

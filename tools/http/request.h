@@ -48,7 +48,7 @@ struct Request {
   std::string remote;      ///< Address of the client, from a trusted proxy where there is one.
   std::string share;       ///< Under this name the client has its share.
   bool is_secure = false;  ///< A trusted proxy says that the client speaks HTTPS.
-  /// What was lent before the request is answered; gone once it was.
+  /// Memory that was lent before the request is answered; gone once it was.
   std::shared_ptr<MemoryBudget::Lease> memory;
   std::stop_token stop;  ///< Fires when nobody waits for the answer any more.
 

@@ -89,7 +89,7 @@ struct Server::Inside {
     acceptor.async_accept([this](const Status& status, tcp::socket socket) {
       if (!acceptor.is_open()) return;
       if (status) {
-        // Without a descriptor for it: that of one who waits for nothing is taken.
+        // A new connection without a descriptor gets that of one who waits for nothing.
         if (close_a_waiting_one([](const Connection&) { return true; })) return accept();
         pause.expires_after(kPause);
         pause.async_wait([this](const Status& stopped) {
@@ -207,7 +207,7 @@ struct Server::Inside {
   // connections that the context lets go use what stands above it.
   Limits limits;
   std::unordered_map<Connection*, std::weak_ptr<Connection>> connections;
-  std::atomic<std::size_t> open{0};                      ///< Of these; other threads ask.
+  std::atomic<std::size_t> open{0};                      ///< Their number; other threads ask.
   std::unordered_map<std::string, std::size_t> of_peer;  ///< Connections, but for those beyond.
   std::size_t extras = 0;
   bool is_ending = false;

@@ -15,7 +15,7 @@ namespace ptin::http {
 /// Why nobody waits for an answer any more.
 enum class GivenUp : std::uint8_t { kNot, kDeadline, kHungUp };
 
-/// What a question takes before it works.
+/// Resources that a question takes before it works.
 struct Needs {
   Lane lane = Lane::kPoint;
   std::uint64_t memory = 0;  ///< Bytes; request.memory has them when it is answered.
@@ -41,7 +41,7 @@ class Service {
   /// Looks at the head of a request before its body is read: throws a Problem where it is refused
   /// whatever its body says.
   virtual void check(const Request& head) const = 0;
-  /// What the request, now with its body, takes.
+  /// The needs of the request, now with its body.
   [[nodiscard]] virtual Needs needs(const Request& request) const = 0;
   /// May throw as answer().
   [[nodiscard]] virtual Response answer_quickly(const Request& request) = 0;

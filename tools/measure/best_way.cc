@@ -37,7 +37,7 @@ std::optional<LogMedian> log_median_of(const Readings& readings) {
   return LogMedian{log_of(*median), kMedianOverMean * spread / n};
 }
 
-/// One way: of each kind that decides what it takes, in the order of the kinds.
+/// One way, with what each kind takes that decides, in the order of the kinds.
 struct WayTimes {
   ReadWay way;
   std::vector<LogMedian> kinds;

@@ -11,7 +11,7 @@
 
 namespace ptin::tools {
 
-/// What the readings say of two ways.
+/// The verdict of the readings on two ways.
 enum class Verdict : std::uint8_t {
   kFaster,     ///< One takes less, by 5 % or more: 1 is no ratio that the readings allow.
   kTie,        ///< All ratios that they allow are within 10 % of 1, and no kinds contradict it.

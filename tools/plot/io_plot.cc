@@ -131,7 +131,7 @@ std::vector<LegendEntry> io_legend() {
           {nullptr, "cold: dropped from the page cache; what lies below it is not visible"}};
 }
 
-/// What the figures come to, in lines that the sheet has room for.
+/// The sum of the figures, in lines that the sheet has room for.
 std::vector<std::string> best_lines(const IoReport& report) {
   const auto best = best_way(report);
   if (!best) return {};

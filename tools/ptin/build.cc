@@ -236,7 +236,7 @@ int plan_in_parts(const BuildCommand& command, const BuildResources& resources,
   return kExitDone;
 }
 
-/// What a dry run came to; its plan is printed in words as soon as it is made.
+/// Tells what a dry run came to; its plan is printed in words as soon as it is made.
 int tell_plan(const BuildReport& report, const Context& context, const BuildShow& show) {
   print_warnings(report.warnings, context);
   if (context.json) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a build warns of: one list, in words and in JSON.
+// Warnings of a build: one list, in words and in JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

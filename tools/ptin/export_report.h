@@ -25,13 +25,13 @@ struct Exported {
   std::uint64_t vertices = 0, triangles = 0, cells = 0;
   std::int64_t columns = 0, rows = 0;
   std::array<double, 2> pixel_size{};      ///< Map units.
-  std::optional<LocalFrame> frame;         ///< Of formats that have one.
-  Certificate certificate;                 ///< Of heights, with what pixels are rounded by.
-  double rounding = 0.0;                   ///< Of heights to pixels; rasters only.
+  std::optional<LocalFrame> frame;         ///< The frame of formats that have one.
+  Certificate certificate;                 ///< Bounds of heights, rounding of pixels included.
+  double rounding = 0.0;                   ///< Rounding of heights to pixels; rasters only.
   std::optional<Transformed> transformed;  ///< The region.
-  std::uint64_t lone_samples = 0;       ///< Of the source: heights without a triangle, void here.
-  std::optional<ClassChanges> changes;  ///< Of the samples in the region; none: not counted.
-  std::uint64_t surface_pixels = 0;     ///< Whose centre lies on surface; rasters only.
+  std::uint64_t lone_samples = 0;          ///< Heights of the source without a triangle, void here.
+  std::optional<ClassChanges> changes;     ///< Changes in the region; none: not counted.
+  std::uint64_t surface_pixels = 0;        ///< Whose centre lies on surface; rasters only.
   std::uint64_t bytes = 0;
   double seconds = 0.0;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What --help looks like: no line is longer than a terminal of 100 columns.
+// The look of --help: no line is longer than a terminal of 100 columns.
 #pragma once
 
 #include <string>

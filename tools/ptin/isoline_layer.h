@@ -78,9 +78,9 @@ class IsolineLayer {
 
   Options options_;
   IsolineFormat format_;
-  std::optional<DxfHeader> header_;          ///< Of a drawing, which needs it until it is closed.
-  std::optional<VectorFile> file_;           ///< Unless it is LandXML,
-  std::optional<LandXmlContours> contours_;  ///< which is here.
+  std::optional<DxfHeader> header_;          ///< A drawing's, which needs it until it is closed.
+  std::optional<VectorFile> file_;           ///< The file of any format but LandXML,
+  std::optional<LandXmlContours> contours_;  ///< whose contours are here.
   std::uint64_t next_id_ = 0;
 };
 

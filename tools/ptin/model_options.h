@@ -15,7 +15,7 @@ namespace ptin::tools {
 struct ModelOptions {
   std::optional<double> base;  ///< --solid, in the height's unit.
   std::string scale;           ///< "25000" or "1:25000"; empty: none.
-  double exaggeration = 1.0;   ///< Of heights.
+  double exaggeration = 1.0;   ///< A factor on heights.
 };
 
 void add_model_options(CLI::App& app, ModelOptions& options);

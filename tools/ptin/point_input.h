@@ -30,8 +30,8 @@ void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
 template <typename T>
 struct Asked {
   std::vector<T> all;
-  std::vector<std::string> ids;            ///< Beside `all`; empty where the input tells none.
-  std::optional<Transformed> transformed;  ///< Of lines: what was done to their sides.
+  std::vector<std::string> ids;            ///< Ids beside `all`; empty where the input tells none.
+  std::optional<Transformed> transformed;  ///< The change of the sides of lines.
 };
 
 /// Reads points from text (engine/construct/read/text_rows.h; "-" is standard input) or from a

@@ -24,7 +24,7 @@ namespace ptin::tools {
 /// FILE, which may lie elsewhere, how it is read, --index and --tmp.
 struct TerrainOptions {
   std::string file;
-  std::string remote_cache;  ///< As parse_memory; empty: the default.
+  std::string remote_cache;  ///< Text for parse_memory; empty: the default.
   std::string cache_folder;
   std::string index = "packed";
   std::string temporary_folder;

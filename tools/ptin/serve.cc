@@ -92,7 +92,7 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   return options;
 }
 
-/// As many connections as there are descriptors for.
+/// Allows as many connections as there are descriptors for.
 void fit_connections(serve::ServeOptions& options) {
   const std::size_t descriptors = http::raise_descriptor_limit();
   const std::size_t each = options.offers_files ? 2 : 1;

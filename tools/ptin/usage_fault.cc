@@ -14,7 +14,7 @@ namespace ptin::tools {
 
 namespace {
 
-/// What other programs call our subcommands.
+/// Names by which other programs call our subcommands.
 constexpr auto kOtherNames = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"contour", "isoline"},
     {"contours", "isoline"},
@@ -63,7 +63,7 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-/// What the values of an option are called: "X Y" of the argument X_Y and of --point.
+/// Names of the values of an option: "X Y" of the argument X_Y and of --point.
 std::string names_of_values(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const bool has_names = !option.get_positional() || type.find(' ') != std::string::npos;

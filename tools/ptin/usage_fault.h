@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is wrong with a command line that does not parse, in a sentence.
+// The fault of a command line that does not parse, in a sentence.
 #pragma once
 
 #include <span>
@@ -15,11 +15,11 @@ namespace ptin::tools {
 [[nodiscard]] std::string one_hyphen_too_few(const CLI::App& app,
                                              std::span<const std::string> words);
 
-/// What is wrong with `word` in the place of a subcommand.
+/// The fault of `word` in the place of a subcommand, in a sentence.
 [[nodiscard]] std::string unknown_subcommand_sentence(const CLI::App& program,
                                                       const std::string& word);
 
-/// What is wrong with the words behind a subcommand, or behind `ptin` where there is none.
+/// The fault of the words behind a subcommand, or behind `ptin` where there is none.
 /// @param app  The one that reads them, as far as it came.
 [[nodiscard]] std::string usage_fault(const CLI::App& app, std::span<const std::string> words,
                                       const CLI::ParseError& error);

@@ -33,7 +33,7 @@ double turns_towards(double x, double other, double turn = kTurn) {
 
 double distance(MapPoint a, MapPoint b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
-/// From p to the segment from a to b.
+/// The distance from p to the segment from a to b.
 double distance_to_segment(MapPoint p, MapPoint a, MapPoint b) {
   const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
   if (square == 0) return distance(p, a);
@@ -190,7 +190,7 @@ class Bender {
   std::span<const MapPoint> path_;
   const PlaceTransform& transform_;
   const SideTarget& target_;
-  std::vector<MapPoint> corners_;  ///< In the other CRS.
+  std::vector<MapPoint> corners_;  ///< Corners in the other CRS.
   std::vector<Added> added_;
 };
 

@@ -18,10 +18,10 @@ namespace ptin::tools {
 
 /// Takes places from one CRS to another one. A place that has none there becomes NaN.
 using PlaceTransform = std::function<void(std::span<MapPoint>)>;
-/// The same by GDAL. `way` outlives it.
+/// The transformation that GDAL makes. `way` outlives it.
 [[nodiscard]] PlaceTransform places_by(OGRCoordinateTransformation& way);
 
-/// Where transformed sides go to.
+/// The place that transformed sides go to.
 struct SideTarget {
   double most_bend = 0.0;  ///< Map units, > 0; infinite: sides are of no interest, corners alone.
   /// How far x is around the Earth, where it jumps by that at the antimeridian: 360 of longitudes in
@@ -53,7 +53,7 @@ struct SideTarget {
                                                       const PlaceTransform& transform,
                                                       const SideTarget& target);
 
-/// What was done to a geometry of another CRS.
+/// The transformation of a geometry of another CRS.
 struct Transformed {
   std::string from;           ///< The name of its CRS.
   double bent_at_most = 0.0;  ///< Map units of the terrain: how far sides may be off.

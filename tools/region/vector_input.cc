@@ -99,7 +99,7 @@ class IntoTerrain : public OGRDefaultGeometryVisitor {
   const SideTarget& sides_;
 };
 
-/// The same for the geometry of a feature. Arcs become chords in their own CRS before.
+/// Brings the geometry of a feature into a terrain's CRS. Arcs become chords in their own before.
 void bring_into_terrain(OGRFeature& feature, OGRCoordinateTransformation& way,
                         const SideTarget& sides, const std::string& path) {
   if (feature.GetGeometryRef() == nullptr) return;

@@ -30,7 +30,7 @@ struct TerrainPlane {
   std::string crs_wkt;  ///< Empty: unknown.
   SideTarget sides;     ///< How near a transformed side keeps to what it was.
 
-  /// The same for those who ask for corners alone.
+  /// This plane for callers who ask for corners alone.
   [[nodiscard]] TerrainPlane with_corners_alone() const;
 };
 [[nodiscard]] TerrainPlane plane_of(const StoreFacts& facts, const CrsFacts& crs);

@@ -19,7 +19,7 @@ constexpr std::string_view kCookie = "ptin_token=";
 
 char digit_of(unsigned value) { return "0123456789abcdef"[value & 0xFU]; }
 
-/// What a cookie, or an address, may hold of any text.
+/// A text in digits that a cookie and an address may hold.
 std::string hex_of_text(std::string_view text) {
   std::string hex;
   for (const char c : text) {
@@ -71,7 +71,7 @@ bool is_bearer(std::string_view scheme) {
       [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
-/// In a time that does not tell how many bytes were right.
+/// Compares in a time that does not tell how many bytes were right.
 bool is_same_secret(std::string_view given, std::string_view secret) {
   unsigned difference = given.size() == secret.size() ? 0U : 1U;
   for (std::size_t i = 0; i < secret.size(); ++i) {
@@ -110,7 +110,7 @@ Access::Access(std::string token, MetricsFor metrics)
 
 void Access::check(const http::Request& request) const {
   if (token_.empty()) return;
-  constexpr std::size_t kScheme = 7;  // Of "Bearer " before the token.
+  constexpr std::size_t kScheme = 7;  // Bytes of "Bearer " before the token.
   const std::string_view given = request.header("authorization").value_or("");
   if (is_bearer(given.substr(0, kScheme)) && is_same_secret(given.substr(kScheme), token_)) return;
   if (has_cookie(request, token_)) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Who may ask: the token of a service, as a header, or as a cookie for browsers.
+// The right to ask: the token of a service, as a header, or as a cookie for browsers.
 #pragma once
 
 #include <string>

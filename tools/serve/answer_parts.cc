@@ -60,7 +60,7 @@ Liking named_liking_of(std::string_view accept, std::string_view media) {
   return liking;
 }
 
-/// The same, where application/json stands for all that is JSON: libraries send it with every
+/// Liking where application/json stands for all that is JSON: libraries send it with every
 /// request, and it chooses between kinds of JSON only for a client that takes nothing else.
 Liking liking_of(std::string_view accept, std::string_view media) {
   media = media.substr(0, media.find(';'));

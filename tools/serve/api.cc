@@ -105,7 +105,7 @@ Json problem_response() {
                   {"limit", {{"type", "string"}}}}}}}}}}}};
 }
 
-/// Of `/v1`.
+/// The refusals of `/v1`.
 Json refusal_response() {
   return {{"description", "what is wrong, as Google's Elevation API tells it"},
           {"content",

@@ -89,7 +89,7 @@ Polygon polygon_of(const Asked& asked, const Places& places) {
   return polygon;
 }
 
-/// So many steps along a side as one of this length comes next to, one at least where it has a length.
+/// The number of equal steps along a side that are nearest to `step`; 0 where it has no length.
 double steps_of(double length, double step) {
   return length > 0 && step > 0 ? std::max(1.0, std::round(length / step)) : 0.0;
 }
@@ -107,7 +107,7 @@ std::size_t checked_count(const Asked& asked, const char* name, double count) {
 /// The positions of the terrain's samples along a side, at equal steps.
 /// @param anchor  Such a position, of which the next one is `step` away.
 Side stored_side(const Asked& asked, const char* name, Side side, double anchor, double step) {
-  constexpr double kSame = 1e-6;  // Of a step: what a transformation rounds.
+  constexpr double kSame = 1e-6;  // Share of a step that a transformation rounds.
   const double first = std::ceil((side.first - anchor) / step - kSame);
   const double last = std::floor((side.last - anchor) / step + kSame);
   if (!(first <= last)) {

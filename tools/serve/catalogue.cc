@@ -150,7 +150,7 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
   } catch (const std::exception& error) {
     if (is_damaged(error) && !is_remote(entry.path))
       entry.next_try = std::chrono::steady_clock::time_point::max();
-    // What took its place leaves the old one whole; what was written into it does not.
+    // A file that took its place leaves the old one whole; bytes that were written into it do not.
     entry.is_damaged =
         seen.device == entry.open->identity.device && seen.inode == entry.open->identity.inode;
     if (is_known) return entry.open;

@@ -90,7 +90,7 @@ class Builder : public nlohmann::json::json_sax_t {
   std::uint64_t values_left_;
   nlohmann::json root_;
   std::vector<nlohmann::json*>
-      open_;  ///< Of an array only the last value is open, so that none moves.
+      open_;  ///< An array has only its last value open, so that none moves.
   std::string member_;
 };
 

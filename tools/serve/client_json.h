@@ -11,10 +11,10 @@
 
 namespace ptin::serve {
 
-/// What the JSON of a client may be.
+/// Bounds on the JSON of a client.
 struct JsonBounds {
   int most_deep = 16;  ///< Objects and arrays within each other.
-  /// Of the parsed form, which takes up to kBytesOfValue for each value beside the text itself.
+  /// Bytes of the parsed form, which takes up to kBytesOfValue a value beside the text itself.
   std::uint64_t memory_bytes = std::uint64_t{16} << 20;
   std::stop_token stop;  ///< Looked at every few thousand values.
 };

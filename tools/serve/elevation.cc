@@ -24,7 +24,7 @@ namespace {
 
 using http::Problem;
 
-/// What others' clients, and libraries below them, put into every request.
+/// A parameter that others' clients, and libraries below them, put into every request.
 constexpr ParameterFact ignored(std::string_view name) {
   return {name, "string", "accepted and without effect"};
 }

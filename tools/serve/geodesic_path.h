@@ -11,10 +11,10 @@
 
 namespace ptin::serve {
 
-/// So many positions at equal distances over ground along a path, its two ends included, whose
+/// Positions at equal distances over ground along a path, its two ends included, whose
 /// vertices are joined by geodesics of WGS 84: across the antimeridian where that is shorter.
 /// @param path     Longitude and latitude in degrees, at least two.
-/// @param samples  At least two.
+/// @param samples  The number of positions, at least two.
 /// @return Longitudes from -180 to 180. Vertices where a sample falls on one, to the bit.
 /// Cost: a few microseconds a vertex and a sample.
 [[nodiscard]] std::vector<MapPoint> along_geodesics(std::span<const MapPoint> path,

@@ -79,7 +79,7 @@ class Places {
  private:
   /// An x of the terrain's CRS in the turn around the Earth that the terrain lies in.
   [[nodiscard]] double turned(double x) const noexcept;
-  /// What is added to a range of x of the terrain's CRS so that it meets the terrain: several where
+  /// Shifts by which a range of x of the terrain's CRS meets the terrain: several where
   /// it meets it in several turns and lies within it in none.
   [[nodiscard]] std::vector<double> shifts_onto_terrain(double low, double high) const;
   void transform_to_terrain(std::span<MapPoint> places, std::string_view parameter) const;
@@ -89,7 +89,7 @@ class Places {
   std::string uri_;
   bool geographic_ = false;
   bool client_turns_ = false;  ///< x of the client is a longitude in degrees.
-  double turn_ = 0;            ///< Of the terrain's x around the Earth; 0: it does not turn.
+  double turn_ = 0;            ///< Length of the terrain's x around the Earth; 0: it does not turn.
   std::optional<Window> bounds_;
 };
 

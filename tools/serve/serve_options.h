@@ -42,7 +42,7 @@ enum class MetricsFor : std::uint8_t {
 struct ServeOptions {
   std::vector<ServedFile> files;
   std::string listen = "127.0.0.1:8080";
-  http::Limits http;  ///< Of its memory see default_memory().
+  http::Limits http;  ///< Its memory is that of default_memory().
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.

@@ -242,7 +242,7 @@ void TerrainService::check(const Request& head) const {
   if (!found.id.empty() && !catalogue_.has(found.id)) throw_no_collection();
 }
 
-/// What is cheap in all but its size goes with what is dearer: a long body is long to read, and
+/// A question cheap in all but its size goes with dearer ones: a long body is long to read, and
 /// the most important vertices of a terrain are looked for.
 http::Needs TerrainService::needs(const Request& request) const {
   constexpr std::size_t kShortBody = std::size_t{16} << 10;

@@ -83,7 +83,7 @@ http::Response tile_response(tools::Tile tile, std::string_view media) {
 
 http::Response layer_json(const Asked& asked) {
   Json json = quantized(asked)->layer_json(version_of(*asked.collection, asked.options.version));
-  json["name"] = asked.collection->id;  // As the collection is titled.
+  json["name"] = asked.collection->id;  // The title of the collection.
   json["ptin:heights"] = datum_name(tools::vertical_datum(asked.collection->crs));
   return json_response(json);
 }

@@ -22,13 +22,13 @@ constexpr MakingTime::Seconds kAhead{0.25};
 constexpr MakingTime::Seconds kMostAtOnce{10};
 constexpr double kShare = 0.25;
 
-/// What was made for two CRSs, or why nothing could be.
+/// The transformations between two CRSs, or why there are none.
 struct Made {
   std::shared_ptr<const BothWays> ways;
   std::string refusal;
 };
 
-/// What was asked for last, by the two CRSs.
+/// The transformations that were asked for last, by their two CRSs.
 class Kept {
  public:
   using Key = std::pair<std::string, std::string>;
@@ -50,7 +50,7 @@ class Kept {
   std::list<std::pair<Key, Made>> kept_;
 };
 
-/// What all threads share: they take copies.
+/// State that all threads share: they take copies.
 struct Shared {
   std::mutex mutex;
   Kept kept;

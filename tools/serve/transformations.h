@@ -29,7 +29,7 @@ struct BothWays {
 [[nodiscard]] std::shared_ptr<const BothWays> both_ways(const std::string& client,
                                                         const std::string& wkt);
 
-/// How much of its time the service spends on CRSs that are new to it: what is there at once, and
+/// The time that the service may spend on CRSs that are new to it: what is there at once, and
 /// what comes back of it. Threads: one.
 class MakingTime {
  public:

@@ -30,10 +30,10 @@ struct RasterFile {
   int y_step = -1;
   int columns = 0;
   int rows = 0;
-  GDALRasterBand* heights = nullptr;  ///< Of `data`, as the next one.
+  GDALRasterBand* heights = nullptr;  ///< A band of `data`, as the next one.
   GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
-  std::optional<double> nodata;       ///< That the file declares.
-  int bits_of_float = 32;             ///< Of a value of Float32.
+  std::optional<double> nodata;       ///< The value that the file declares.
+  int bits_of_float = 32;             ///< Bits of a value of Float32.
   double scale = 1.0;
   double offset = 0.0;
 
@@ -175,8 +175,8 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   GDALRasterBand& band = *file.heights;
   CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
                                 GDT_Float64, 0, 0, nullptr);
-  // A nodata value given at the build takes the place of the file's own; other masks stay. What a
-  // mask makes of the band's nodata value alone is left to is_nodata(), and of alpha to its band.
+  // A nodata value given at the build takes the place of the file's own; other masks stay. A mask
+  // that stands for the band's nodata value alone is left to is_nodata(), one of alpha to its band.
   const int flags = band.GetMaskFlags();
   const bool is_own =
       (flags & GMF_NODATA) != 0 && (choices_.nodata.has_value() || (flags & GMF_PER_DATASET) == 0);
@@ -215,7 +215,7 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   }
 }
 
-/// Of two bands one may be alpha.
+/// One of two bands may be alpha.
 void choose_bands(RasterFile& file) {
   file.heights = file.data->GetRasterBand(1);
   if (file.data->GetRasterCount() == 2) {

@@ -135,7 +135,7 @@ struct SampleResources {
 void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
                      const SampleResources& resources);
 
-/// As check_is_source(), of points.
+/// Checks of points what check_is_source() checks of others.
 void check_first_points(const std::vector<std::string>& paths, const StoreFile& store,
                         const SampleResources& resources);
 

@@ -126,7 +126,7 @@ void require_upwards(const OGRSpatialReference& srs) {
 Crs describe(OGRSpatialReference srs) {
   Crs crs;
   if (srs.IsCompound() && is_vertical_unnamed(srs)) {
-    // It tells a unit alone. Where that has a name which tells its length, the name is enough.
+    // The vertical part tells a unit alone. A name that tells the unit's length is enough.
     const LengthUnit unit = vertical_unit_of(srs);
     if (metres_in(unit.name)) {
       crs.vertical_unit = unit.name;
@@ -151,7 +151,7 @@ Crs describe(OGRSpatialReference srs) {
   return crs;
 }
 
-/// What a source declares of its CRS, with what is not understood taken out and warned of.
+/// The CRS that a source declares; parts that are not understood are taken out and warned of.
 class OwnCrs {
  public:
   OwnCrs(DeclaredTexts declared, const std::string& file, SourceWarnings& warnings)

@@ -79,7 +79,7 @@ struct PointGrid {
   std::int64_t east = 0, north = 0;  ///< Steps of the largest x and y.
   StepCounter heights;               ///< Turns heights into codes, where `whole`.
   bool whole = false;  ///< Heights are codes: whole steps of a power of ten, which fit int32.
-  bool drops_digits = false;  ///< Of x and y, which then move to the nearest step.
+  bool drops_digits = false;  ///< Digits of x and y, which then move to the nearest step.
   /// The points take more than 180 units from west to east, and as many on end are empty.
   bool is_split = false;
 
@@ -161,7 +161,7 @@ class PointGridScan {
   /// point, or seven in degrees; more are kept where points have more.
   void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return extent_.points; }
-  /// Of points that lie far from all others.
+  /// Warnings of points that lie far from all others.
   [[nodiscard]] SourceWarnings warnings() const {
     return extent_.far.warnings(extent_.points, context_);
   }

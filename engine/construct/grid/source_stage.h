@@ -56,7 +56,7 @@ using RunStage = std::function<std::vector<std::string>(const SourceStage&, Stag
 
 /// A RunStage: one task after the other, on this thread.
 [[nodiscard]] std::vector<std::string> run_alone(const SourceStage& stage, StageWorker& worker);
-/// The same, with what tasks may take, what stops them, and who is told how far they are: `progress`
+/// Runs it alone within `memory`, until it is stopped. `progress`, which is told of each task,
 /// may be empty.
 /// @throws Error  as the first task that fails
 [[nodiscard]] std::vector<std::string> run_alone_within(

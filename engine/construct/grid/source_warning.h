@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a reader of a source warns of: what the source declares or holds that was probably meant
+// Warnings of a reader of a source: the source declares or holds something that was probably meant
 // otherwise than it is taken.
 #pragma once
 
@@ -12,14 +12,13 @@ namespace ptin {
 
 /// One sentence, of one or many places.
 struct SourceWarning {
-  std::string kind;  ///< A name for programs, as "undeclared_nodata"; never changes.
-  std::string
-      message;       ///< What is taken how, and a way out. It names neither the file nor `count`.
-  std::string file;  ///< The first that it is about; "" where it is about none.
-  std::string subject{};    ///< What tells warnings of a kind apart, as a value or a name.
-  std::uint64_t line = 0;   ///< Of the first place, from 1; 0 where it has none.
-  std::uint64_t count = 0;  ///< How many samples or points; 0 where it is about a file as a whole.
-  std::uint64_t files = 1;  ///< How many files it is about.
+  std::string kind;     ///< A name for programs, as "undeclared_nodata"; never changes.
+  std::string message;  ///< The fact, how it is taken, and a way out; neither the file nor `count`.
+  std::string file;     ///< The first that it is about; "" where it is about none.
+  std::string subject{};       ///< A value or a name that tells warnings of a kind apart.
+  std::uint64_t line = 0;      ///< The line of the first place, from 1; 0: none.
+  std::uint64_t count = 0;     ///< Samples or points; 0 where it is about a file as a whole.
+  std::uint64_t files = 1;     ///< Files that it is about.
   std::string last_file = {};  ///< The last of them; "" means `file`.
 };
 
@@ -30,8 +29,8 @@ class SourceWarnings {
  public:
   /// Adds a warning that comes later in the source than all that are here.
   void add(SourceWarning warning);
-  /// Adds those of the part of the source that comes next. What both say of the same file, the last
-  /// one here, counts that file once.
+  /// Adds those of the part of the source that comes next. A file of which both warn, the last
+  /// one here, counts once.
   void join(const SourceWarnings& next);
   [[nodiscard]] const std::vector<SourceWarning>& all() const noexcept { return all_; }
   [[nodiscard]] bool is_empty() const noexcept { return all_.empty(); }

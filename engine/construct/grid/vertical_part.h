@@ -11,7 +11,7 @@ namespace ptin {
 
 /// A unit of length.
 struct LengthUnit {
-  std::string name;  ///< As unit_called() (engine/crs/height_unit.h).
+  std::string name;  ///< A name for unit_called() (engine/crs/height_unit.h).
   double metres = 1.0;
 };
 

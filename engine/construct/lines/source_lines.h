@@ -46,8 +46,8 @@ struct SourceLines {
   /// (delaunay/boundary_drape.h).
   bool rings_are_flat = false;
   std::vector<LineFileFacts> files;
-  SourceWarnings warnings;                       ///< Of all files.
-  std::uint64_t most_vertices = UINT32_MAX - 1;  ///< What there is memory for.
+  SourceWarnings warnings;                       ///< Warnings of all files.
+  std::uint64_t most_vertices = UINT32_MAX - 1;  ///< The number that there is memory for.
 
   [[nodiscard]] bool is_empty() const noexcept {
     return breaklines.size() == 0 && rings.size() == 0;

@@ -57,10 +57,10 @@ class PointBuckets {
     TerrainFrame frame;
     PointCounts counts;
     std::vector<std::uint64_t> empty_inputs;  ///< The numbers of those that have no point at all.
-    SourceWarnings warnings;                  ///< Of reading them.
+    SourceWarnings warnings;                  ///< Warnings of reading them.
     ConvexHull hull;
     std::uint64_t size = 0;           ///< Distinct positions.
-    std::uint64_t bucket_points = 0;  ///< Of a bucket that is not the last one of its range.
+    std::uint64_t bucket_points = 0;  ///< Points of a bucket that is not its range's last.
     bool codes_are_whole = false;     ///< Heights on disk are codes.
     std::vector<Range> ranges;
     std::vector<GridBox> boxes;            ///< Of the buckets.

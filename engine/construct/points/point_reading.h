@@ -52,7 +52,7 @@ struct PortionRead {
   std::uint64_t left_out = 0;  ///< As PointStream::left_out().
   double largest_shift = 0.0;  ///< As PointStream::largest_shift().
   std::optional<RowsOfPart> rows;
-  SourceWarnings warnings;  ///< As PointStream::warnings().
+  SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
 };
@@ -111,7 +111,7 @@ struct PointReading {
   double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
   std::uint64_t left_out = 0;
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
-  SourceWarnings warnings{};                  ///< Of all portions.
+  SourceWarnings warnings{};                  ///< Warnings of all portions.
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;

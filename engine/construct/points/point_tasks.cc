@@ -18,10 +18,10 @@ constexpr const char* kReadingPlan = "portions";
 constexpr const char* kSortPlan = "plan";
 constexpr const char* kSharedPlan = "shares";
 
-/// What any task takes, of blocks, buffers and what it knows of files; bytes.
+/// Bytes that any task takes for blocks, buffers and what it knows of files.
 constexpr std::uint64_t kTaskBytes = std::uint64_t{2} << 20;
 
-constexpr const char* kQuotes = "quotes";  ///< What a task tells of a portion that has them.
+constexpr const char* kQuotes = "quotes";  ///< A task's word for a portion that has them.
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a raster declares beside its values, as far as it bears on where a sample is, how high, in
+// Declarations of a raster beside its values that bear on where a sample is, how high it is, in
 // which unit, and whether it counts: used, warned of, or refused (tools/API.md, "What a source
 // declares").
 #pragma once
@@ -19,9 +19,9 @@ namespace ptin {
 /// The bands of a raster. All are GDAL's.
 struct RasterBands {
   GDALRasterBand* height = nullptr;
-  /// That is above 0 where a sample counts, of any type; null where there is none.
+  /// The band that is above 0 where a sample counts, of any type; null where there is none.
   GDALRasterBand* alpha = nullptr;
-  /// The same, of bytes: a mask in the file, beside it, or of a nodata value of the whole dataset.
+  /// A mask of bytes: one in the file, one beside it, or of a nodata value of the whole dataset.
   GDALRasterBand* mask = nullptr;
 };
 

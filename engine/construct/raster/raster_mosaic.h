@@ -46,9 +46,9 @@ class RasterMosaic {
   [[nodiscard]] const AffineMap& map() const noexcept { return map_; }
   [[nodiscard]] std::int64_t width() const noexcept { return width_; }    ///< Samples in x.
   [[nodiscard]] std::int64_t height() const noexcept { return height_; }  ///< Samples in y.
-  /// What the first file says of itself: type, scale, offset and blocks are those of all.
+  /// The shape of the first file: its type, scale, offset and blocks are those of all.
   [[nodiscard]] const RasterShape& first() const noexcept { return parts_[0].part.shape(); }
-  /// Of heights: that of the first file that declares one, which is that of all that do.
+  /// The unit of heights: that of the first file that declares one, and so of all that do.
   [[nodiscard]] std::string unit() const;
   /// The last file that covers a sample.
   [[nodiscard]] const std::string& path_at(std::int64_t x, std::int64_t y) const;

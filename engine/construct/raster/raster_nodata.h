@@ -14,7 +14,7 @@ namespace ptin {
 struct StoredType {
   GDALDataType type = GDT_Unknown;
   bool signed_bytes = false;  ///< Values are -128 to 127, though the type is Byte (GDAL < 3.7).
-  int significant_bits = 0;   ///< Of floats that are stored with fewer than theirs; else 0.
+  int significant_bits = 0;   ///< Bits of floats that are stored with fewer than theirs; else 0.
 };
 
 /// The stored values from `low` to `high`; none by default.

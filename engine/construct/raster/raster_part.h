@@ -57,7 +57,7 @@ class RasterPart {
   RasterPart& operator=(RasterPart&&) noexcept;
 
   [[nodiscard]] const RasterShape& shape() const noexcept { return shape_; }
-  /// What there is to be warned of that the file declares.
+  /// Warnings of what the file declares.
   [[nodiscard]] const SourceWarnings& warnings() const noexcept { return warnings_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
@@ -81,7 +81,7 @@ class RasterPart {
 
   std::string path_;
   std::optional<double> nodata_override_;
-  NodataRange nodata_;  ///< Of the nodata value in force, compared with stored values.
+  NodataRange nodata_;  ///< The nodata value in force, compared with stored values.
   RasterShape shape_;
   SourceWarnings warnings_;
   std::unique_ptr<Bands> bands_;

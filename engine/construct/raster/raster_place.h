@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where a raster lies: its geotransform and CRS, and what stands in the place of one.
+// The place of a raster: its geotransform and CRS, and what stands in the place of one.
 #pragma once
 
 #include <string>

@@ -33,12 +33,12 @@ HeightScan::Given given(RawType raw) {
 
 }  // namespace
 
-/// What the samples of a band are. A plain value, without a byte that means nothing.
+/// Facts of the samples of a band: a plain value, without a byte that means nothing.
 struct RasterScan::Found {
-  HeightScan::Known heights{};  ///< Of rasters that do not hold whole codes.
-  std::int64_t low = std::numeric_limits<std::int64_t>::max();  ///< Of whole codes.
+  HeightScan::Known heights{};  ///< Heights of rasters that do not hold whole codes.
+  std::int64_t low = std::numeric_limits<std::int64_t>::max();  ///< The least whole code.
   std::int64_t high = std::numeric_limits<std::int64_t>::min();
-  std::uint64_t codes = 0;  ///< How many there are.
+  std::uint64_t codes = 0;  ///< Their number.
   RasterSuspects::Known suspects{};
 };
 

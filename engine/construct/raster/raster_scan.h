@@ -28,7 +28,7 @@ class RasterScan final : public StageWorker {
   [[nodiscard]] SourceStage stage() const;
   /// @throws Error  as RasterSource::open()
   [[nodiscard]] std::string run(const StageTask& task) override;
-  /// What all tasks together found: the encoding, and values that may stand for no height.
+  /// The findings of all tasks: the encoding, and values that may stand for no height.
   struct Joined {
     HeightFit fit;
     std::vector<RasterSuspects::Suspect> suspects;

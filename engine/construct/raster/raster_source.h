@@ -77,7 +77,7 @@ class RasterSource {
   [[nodiscard]] std::int64_t height() const noexcept;  ///< Samples in y, at least 2.
   [[nodiscard]] std::uint64_t valid_samples() const noexcept;
   [[nodiscard]] std::uint64_t void_samples() const noexcept;
-  /// What the files declare, and open() found, that there is to be warned of.
+  /// Warnings of what the files declare and open() found.
   [[nodiscard]] const SourceWarnings& warnings() const noexcept;
 
   /// Reads the window of `w` x `h` samples whose south-western one is (x0, y0): row-major, row 0 in

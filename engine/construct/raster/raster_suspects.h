@@ -28,7 +28,7 @@ class RasterSuspects {
   /// Plain, without a byte that means nothing.
   struct Known {
     std::array<Suspect, kKinds> kinds{};
-    double low = std::numeric_limits<double>::infinity();  ///< Of all other values.
+    double low = std::numeric_limits<double>::infinity();  ///< The least of all other values.
     double high = -std::numeric_limits<double>::infinity();
   };
 

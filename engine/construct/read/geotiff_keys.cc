@@ -171,7 +171,7 @@ class KeyReader {
     return srs;
   }
 
-  /// The same with any CRS in plan, which GDAL wants to have before it looks at heights.
+  /// The CRS of keys of heights, with some CRS in plan, which GDAL wants before it looks at them.
   [[nodiscard]] OGRSpatialReference crs_of_vertical(std::vector<Entry> entries) const {
     entries.insert(entries.begin(),
                    {Entry{kModelType, 0, 1, 1}, Entry{kProjectedCrs, 0, 1, 32631}});
@@ -227,7 +227,7 @@ void add_ellipsoidal(OGRSpatialReference plane, const std::optional<LengthUnit>&
        "kept");
 }
 
-/// What the keys of the vertical part say, beside a horizontal CRS.
+/// Adds what the keys of the vertical part say to what a horizontal CRS declares.
 void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
                   const OGRSpatialReference& plane, DeclaredCrs& declared) {
   const std::uint16_t code = code_of(entries, kVertical);

@@ -20,13 +20,13 @@ struct GeoTiffKeys {
 struct DeclaredCrs {
   std::string crs;           ///< Anything that GDAL understands; "" for none.
   std::string vertical_crs;  ///< Likewise, where it is apart from `crs`.
-  DeclaredUnits units;       ///< Beside these.
-  /// About what is not understood or contradicts itself; they name no file. Kinds that begin with
-  /// "crs_" mean nothing where the caller puts another CRS in the place of this one.
+  DeclaredUnits units;       ///< Units that are declared beside these.
+  /// Warnings of keys that nobody understands or that contradict others. They name no file; kinds
+  /// "crs_..." mean nothing where the caller puts another CRS in the place of this one.
   std::vector<SourceWarning> warnings;
 };
 
-/// What GeoTIFF keys declare, which libgeotiff and GDAL know; but that VerticalUnits decides about
+/// Reads what GeoTIFF keys declare, as libgeotiff and GDAL know it; but VerticalUnits decides about
 /// the heights' unit, whatever unit the vertical CRS has that stands beside it: programs name NAVD88
 /// by the code of its metres, and feet by that key.
 /// @throws nothing of its own; keys that are cut off are warned of

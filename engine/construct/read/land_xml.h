@@ -53,10 +53,10 @@ class LandXmlElements {
 
   ByteReader& in_;
   std::string text_;
-  std::string crs_;           ///< As PointStreamFacts::crs, from when it was read.
+  std::string crs_;           ///< The text for PointStreamFacts::crs, once it was read.
   std::string vertical_crs_;  ///< Likewise.
   DeclaredUnits units_;       ///< Likewise.
-  SourceWarnings warnings_;   ///< Of what the file declares and nobody follows.
+  SourceWarnings warnings_;   ///< Warnings of what the file declares and nobody follows.
 
   void warn(std::string kind, std::string message);
 

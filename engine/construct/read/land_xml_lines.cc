@@ -139,7 +139,7 @@ class LandXmlLines final : public LandXmlElements {
   std::stop_token stop_;
   bool is_wanted_ = false, in_line_ = false;
   std::uint64_t lines_ = 0, lines_of_surface_ = 0;
-  std::uint64_t number_ = 0;             ///< Of the surface, from 1.
+  std::uint64_t number_ = 0;             ///< The number of the surface, from 1.
   std::uint64_t outer_ = 0, voids_ = 0;  ///< Boundaries by their type.
   std::size_t numbers_of_vertex_ = 3;
   bool is_flat_ = false;

@@ -183,9 +183,9 @@ class LandXml final : public LandXmlElements {
   bool has_surface_ = false, in_surface_ = false, in_definition_ = false, in_points_ = false,
        in_faces_ = false;
   bool is_hidden_ = false, are_numbered_ = false;
-  std::uint64_t surfaces_ = 0;    ///< That began so far.
+  std::uint64_t surfaces_ = 0;    ///< Surfaces that began so far.
   std::uint64_t read_ = 0;        ///< The number of the surface that is read; 0: none yet.
-  std::uint64_t boundaries_ = 0;  ///< Of that surface, in its source data.
+  std::uint64_t boundaries_ = 0;  ///< Boundaries of that surface, in its source data.
   std::string id_, reference_, state_, names_;
   std::vector<std::string_view> words_;
 };

@@ -22,7 +22,7 @@ constexpr std::uint16_t kKeys = 34735, kDoubles = 34736, kText = 34737;
 struct RecordPlace {
   std::uint64_t begin = 0, end = 0;  ///< Bytes of the file.
   std::uint64_t count = 0;
-  bool extended = false;  ///< With lengths of 64 bits.
+  bool extended = false;  ///< Records have lengths of 64 bits.
 };
 
 std::string_view text_of(std::span<const unsigned char> bytes) {

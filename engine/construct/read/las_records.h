@@ -12,7 +12,7 @@
 
 namespace ptin {
 
-/// What the records of a LAS file hold of its CRS.
+/// The records of a LAS file that tell its CRS.
 struct LasRecords {
   std::vector<std::string> wkt;  ///< The texts that are not empty, in the order of the file.
   GeoTiffKeys keys;              ///< The last of each kind of record.

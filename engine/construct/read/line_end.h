@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where lines of text end: at LF, at CR LF, or at a CR alone, in one text too.
+// Ends of lines of text: LF, CR LF, or a CR alone, in one text too.
 #pragma once
 
 #include <algorithm>

@@ -53,7 +53,7 @@ class PointStream {
   /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
   /// points. Other streams have nothing to tell.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
-  /// What there is to be warned of so far. Each part of a file tells what lies in it, and those that
+  /// Warnings so far. Each part of a file tells those of what lies in it, and those that
   /// are about the file as a whole (SourceWarning::count is 0) may be told by every part.
   [[nodiscard]] virtual SourceWarnings warnings() const { return {}; }
   /// Progress so far, in a unit of the stream's own: points, features or bytes.

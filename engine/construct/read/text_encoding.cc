@@ -29,7 +29,7 @@ std::optional<std::string> fault_of_encoding(std::string_view line, bool is_firs
   if (zero == std::string_view::npos) {
     return std::nullopt;
   }
-  // Of two bytes of a character the first one is 0 where the order is big-endian. A line behind the
+  // The first of a character's two bytes is 0 where the order is big-endian. A line behind the
   // first one of a little-endian text begins with the second byte of a line end.
   const bool is_little = is_first ? zero % 2 == 1 : zero == 0;
   return "this text has bytes of value 0, as UTF-16 without a byte order mark has; save it as "

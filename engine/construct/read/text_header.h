@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the first lines of a text decide: what separates its fields, and which line names its columns.
+// Decisions from the first lines of a text: what separates fields, and which line names columns.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-/// What may stand around a field and is no part of it: blanks, what ends lines and pages, and the
+/// Characters around a field that are no part of it: blanks, ends of lines and of pages, and the
 /// mark that ends texts of DOS.
 inline constexpr std::string_view kBlanks = " \t\r\n\f\v\x1a";
 
@@ -19,7 +19,7 @@ inline constexpr std::string_view kBlanks = " \t\r\n\f\v\x1a";
   return kBlanks.find(c) != std::string_view::npos;
 }
 
-/// Without the blanks around it.
+/// The text without the blanks around it.
 [[nodiscard]] std::string_view trimmed(std::string_view text, std::string_view blanks = kBlanks);
 
 /// Where the quoted field that begins at `at` ends: behind its last quote; npos when it does not.

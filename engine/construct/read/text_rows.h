@@ -46,7 +46,7 @@ class TextRows {
   /// "degree". Reads the first row.
   /// @throws Error as next(); invalid_argument  those of x and y differ
   [[nodiscard]] DeclaredUnits units();
-  /// What the name of a coordinate's column says in brackets and is no known unit; "" for nothing.
+  /// The unit in brackets in the name of a coordinate's column, where nobody knows it; else "".
   /// @throws Error as next()
   [[nodiscard]] std::string unknown_unit();
 

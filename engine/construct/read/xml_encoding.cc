@@ -57,7 +57,7 @@ int XMLCALL find_xml_encoding(void* /*ignored*/, const XML_Char* name, XML_Encod
   for (int byte = 0; byte < 256; ++byte) {
     const char text = static_cast<char>(byte);
     const int character = character_of(opened, &text, 1);
-    // What is no character by itself may be the first half of one. XML is written in ASCII.
+    // A byte that is no character by itself may be the first half of one. XML is written in ASCII.
     to->map[byte] = byte < 0x80 ? byte : character >= 0 ? character : -2;
     if (byte < 0x80 && character != byte && byte >= 0x20 && byte != '\\' && byte != '~') {
       return XML_STATUS_ERROR;

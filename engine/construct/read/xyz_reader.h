@@ -35,7 +35,7 @@ class XyzReader {
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
   [[nodiscard]] bool next(XyzPoint& point);
 
-  /// As of TextRows.
+  /// The units as TextRows tells them.
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 

@@ -98,7 +98,7 @@ class ArrayFileReader {
     require_undamaged();
     return copy;
   }
-  /// As take_copy(), of a text.
+  /// Takes a text as take_copy() takes numbers.
   [[nodiscard]] std::string take_text() {
     const std::vector<char> text = take_copy<char>();
     return {text.begin(), text.end()};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Why an unfinished build cannot be gone on with: what it was begun with is something else.
+// Reasons why an unfinished build cannot be gone on with: it was begun with something else.
 #pragma once
 
 #include <string>

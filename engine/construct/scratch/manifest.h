@@ -39,7 +39,7 @@ class Manifest {
   std::string path_;
   ScratchFile file_;
   std::vector<nlohmann::json> entries_;
-  std::uint64_t bytes_ = 0;  ///< That are believed.
+  std::uint64_t bytes_ = 0;  ///< Bytes that are believed.
   std::uint64_t file_bytes_ = 0;
 };
 

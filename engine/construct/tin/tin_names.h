@@ -92,7 +92,7 @@ struct NamedCorner {
 };
 
 /// A file's terrain: triangles and quads whose corners all have a height, and the vertices that they
-/// name. Of a quad three of whose corners have a height the triangle of these is there.
+/// name. A quad three of whose corners have a height leaves the triangle of these.
 struct NamedTin {
   RecordFile<NamedVertex> vertices;  ///< Ascending by id, each once.
   RecordFile<NamedCorner> corners;   ///< Ascending by id, then place; each id is in `vertices`.

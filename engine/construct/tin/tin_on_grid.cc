@@ -62,8 +62,8 @@ bool is_inside(const Quad& quad, std::size_t i, const SignOfArea& sign) {
   return first != 0 && first == sign({quad[i], quad[i + 2], quad[(i + 3) % 4]});
 }
 
-/// The corner, 0 or 1, from which a quad is cut into two triangles. Of a quad that is not convex only
-/// one diagonal lies inside. Else it is the one whose ends differ less in height, as of a raster's
+/// The corner, 0 or 1, from which a quad is cut into two triangles. A quad that is not convex has
+/// one diagonal inside only. Else it is the one whose ends differ less in height, as of a raster's
 /// cells, else the shorter one, else the one from the corner with the smallest key.
 std::size_t begin_of_cut(const Quad& quad) {
   const auto on_grid = [](const std::array<JoinedCorner, 3>& c) {

@@ -76,7 +76,7 @@ struct TinOnGrid {
   std::unique_ptr<TriangleSorter> triangles;
   /// Distinct positions of the vertices of triangles, along the curve.
   std::unique_ptr<RecordFile<std::uint64_t>> places;
-  std::uint64_t turned_triangles = 0;  ///< That went another way round than most.
+  std::uint64_t turned_triangles = 0;  ///< Those that went round unlike most.
   OrientationFaults faults;
   TinFault heights_differ;  ///< Positions with several heights.
   // As TinCounts (tin/tin_source.h).

@@ -16,7 +16,7 @@ namespace ptin {
 /// Turns a triangle so that the corner of least key comes first, however the mesh has it.
 void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle);
 
-/// What a mesh holds at a spot: state, height and triangle, without an interval.
+/// The state, height and triangle of a mesh at a spot, without an interval.
 /// REQUIRES: place = find_spot(tin, spot, ...).
 [[nodiscard]] LocatedPoint located_at(const Tin& tin, const HeightEncoding& heights, Spot spot,
                                       const Place& place);

@@ -84,7 +84,7 @@ void SegmentWriter::write(std::uint32_t part, std::span<const GroundStretch> str
     last = &s;
   }
   if (any([](const GroundStretch& s) { return s.to == 1.0; })) {
-    // Without a stretch the line touches the domain with its end alone.
+    // A line without a stretch touches the domain with its end alone.
     put(1.0, last == nullptr ? touched(stretches) : std::nullopt,
         points_.empty() ? PointState::kOutside : points_.back().state);
   } else {

@@ -58,7 +58,7 @@ class SegmentWriter {
   const StoreFacts& facts_;
   const SpotLine& line_;
   std::vector<ProfilePoint>& points_;
-  std::vector<GroundPoint> ground_;  ///< Of the segment at hand, along it.
+  std::vector<GroundPoint> ground_;  ///< Ground along the segment at hand.
   std::uint32_t part_ = 0;
 };
 

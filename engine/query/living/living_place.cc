@@ -13,7 +13,7 @@ namespace ptin {
 
 namespace {
 
-/// With more bytes of nodes, of a large box, the index is asked: it leaves out what lies above the
+/// The index is asked where nodes of a large box have more bytes: it leaves out what lies above the
 /// level by few nodes.
 constexpr std::uint64_t kMostDirectoryBytes = std::uint64_t{64} << 10;
 

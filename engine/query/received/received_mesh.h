@@ -21,7 +21,7 @@ struct ReceivedMesh {
   const Tin& tin;
   /// `free_of_voids` as the metadata of the stream tell it.
   const StoreFacts& facts;
-  /// What holds at the places that are asked. `complete`: no record of the file is missing there.
+  /// The bounds at the places that are asked. `complete`: no record of the file is missing there.
   Certificate certificate;
 };
 
@@ -29,7 +29,7 @@ struct ReceivedMesh {
 /// and the greatest height of the terrain.
 [[nodiscard]] Certificate certificate_by_relief(const StoreFacts& facts);
 
-/// What the mesh holds at a map position. The interval is that of the certificate.
+/// The point of the mesh at a map position. Its interval is that of the certificate.
 /// @throws Error invalid_argument  a coordinate that is not finite
 /// Cost: about the square root of the number of triangles.
 [[nodiscard]] LocatedPoint locate_on(const ReceivedMesh& mesh, MapPoint at);

@@ -12,7 +12,7 @@ namespace ptin {
 
 namespace {
 
-/// Where the clearance first falls to zero for certain in a piece that hides the line: at its
+/// The share of the way where the clearance first falls to zero for certain in a hiding piece: at its
 /// beginning, or where the parabola does.
 double first_below(const Ray& ray, const SightPiece& piece) {
   const double width = piece.to - piece.from;
@@ -22,7 +22,7 @@ double first_below(const Ray& ray, const SightPiece& piece) {
 }
 
 /// True when every piece before `hidden` is visible and `hidden` is what it is in the full TIN.
-/// Without a hidden piece, where a vertex alone hides the line: when all pieces are visible.
+/// A line that a vertex alone hides has no such piece: then all pieces have to be visible.
 bool is_first_for_certain(const SightLine& view, const SightPiece* hidden) {
   const auto first = std::find_if(view.pieces.begin(), view.pieces.end(), [](const auto& p) {
     return p.verdict != PieceVerdict::kVisible;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a line of sight measures once its pieces are decided: obstruction, clearance, Fresnel zone.
+// Measures of a line of sight once its pieces are decided: obstruction, clearance, Fresnel zone.
 #pragma once
 
 #include "engine/query/sight/sight.h"
@@ -8,7 +8,7 @@
 
 namespace ptin {
 
-/// What an end stands on.
+/// The state of the ground on which an end stands.
 [[nodiscard]] PointState state_of(const SightEnd& end);
 
 /// The point of the line at a share of its way.

@@ -178,7 +178,7 @@ void StreamReader::check_magic() const {
   for (std::size_t i = 0; i < std::min(first.size(), stream::kMagic.size()); ++i) {
     agree += first[i] == std::byte{stream::kMagic[i]} ? 1 : 0;
   }
-  // What follows another stream, or begins nearly like one, was meant to be one.
+  // Bytes that follow a stream, or begin nearly like one, were meant to be one.
   if (has_mesh() || 2 * agree > std::min(first.size(), stream::kMagic.size()))
     reject("the first bytes are not those of a stream; it is damaged");
   throw Error(ErrorCode::invalid_argument, "this is not a stream of ptin: " + beginning_of(first),

@@ -78,11 +78,11 @@ TEST(TinSource, CutsQuadsAsCellsOfRastersAre) {
   const std::vector<Vertex3> dart = {{0, 0, 0}, {9, 0, 50}, {3, 3, 70}, {0, 9, 50}};
   EXPECT_EQ(cut(dart, "f 1 2 3 4\n"),
             keys({{0, 1, 2}, {0, 2, 3}}, {{0, 0}, {9, 0}, {3, 3}, {0, 9}}));
-  // Of equal heights the shorter one.
+  // The shorter diagonal counts where heights are equal.
   const std::vector<Vertex3> kite = {{0, 0, 1}, {9, 0, 1}, {20, 20, 1}, {0, 9, 1}};
   EXPECT_EQ(cut(kite, "f 1 2 3 4\n"),
             keys({{0, 1, 3}, {1, 2, 3}}, {{0, 0}, {9, 0}, {20, 20}, {0, 9}}));
-  // Without a corner's height the triangle of the others.
+  // A corner without a height leaves the triangle of the others.
   SourceOptions options;
   options.nodata = -1.0;
   EXPECT_EQ(cut(with_heights(0, 1, 2, -1), "f 1 2 3 4\n", options).size(), 1U);

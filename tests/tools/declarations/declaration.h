@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a source can declare beside its numbers: a row of the tables in tools/API.md, "What a source
+// A declaration of a source beside its numbers: a row of the tables in tools/API.md, "What a source
 // declares", and files that tell whether the row is true. One list a kind of source.
 #pragma once
 

@@ -26,7 +26,7 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// What the tables say of each declaration: `used`, `warned` or `refused`. A row is
+/// The tables' word for each declaration: `used`, `warned` or `refused`. A row is
 /// "| `key` | what is declared | used: in words |".
 std::map<std::string, std::string> documented() {
   std::istringstream text(testing::read_file(PTIN_TEST_DATA "/../../tools/API.md"));
@@ -55,7 +55,7 @@ std::vector<Declaration> all_declarations() {
 
 struct Built {
   Outcome build;
-  json info;  ///< Of the terrain, less what is the file's own; null where there is none.
+  json info;  ///< Facts of the terrain, less what is the file's own; null where there is none.
 };
 
 Built build_of(const Declaration& declaration, bool is_declared) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What LAS files declare.
+// Declarations of LAS files.
 #include <functional>
 
 #include "tests/support/las_file.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What layers that OGR reads declare.
+// Declarations of layers that OGR reads.
 #include "tests/tools/declarations/declaration.h"
 
 namespace ptin::tools::testing {

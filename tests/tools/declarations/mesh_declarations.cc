@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What TINs: PLY, OBJ, 2DM and LandXML declare.
+// Declarations of TINs: PLY, OBJ, 2DM and LandXML.
 #include "tests/tools/declarations/declaration.h"
 
 namespace ptin::tools::testing {

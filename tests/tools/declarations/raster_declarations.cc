@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What rasters declare.
+// Declarations of rasters.
 #include <cfloat>
 #include <stdexcept>
 #include <utility>
@@ -66,7 +66,7 @@ Declaration of_vrt(const char* key, void (*declare)(Vrt& vrt), double odd = 60.0
             return written(folder, vrt, odd);
           }};
 }
-/// The same, of two sources that differ.
+/// A row of two VRTs, one with the declaration and one without, that `make` writes.
 Declaration of_vrts(const char* key, void (*make)(Vrt& vrt, bool is_declared)) {
   return {key, [make](const TestFolder& folder, bool is_declared) {
             Vrt vrt;
@@ -103,7 +103,7 @@ Arguments old_geotiff(const TestFolder& folder, bool is_declared) {
   return as_geotiff(folder, vrt, options);
 }
 
-/// The same tiepoint, of a pixel's centre or of its corner.
+/// One tiepoint, of a pixel's centre or of its corner.
 Arguments pixel_is_point(const TestFolder& folder, bool is_declared) {
   const CPLConfigOptionSetter as_given("GTIFF_POINT_GEO_IGNORE", "YES", false);
   Vrt vrt;

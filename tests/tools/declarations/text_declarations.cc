@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What points as text declare.
+// Declarations of points as text.
 #include "tests/tools/declarations/declaration.h"
 
 namespace ptin::tools::testing {

@@ -11,7 +11,7 @@ export type PointState = 'surface' | 'void' | 'outside';
 
 /** A corner of a triangle, on the map. */
 export interface Corner extends MapPosition {
-  /** In the height's unit; null where the vertex has none. */
+  /** A height in its unit; null where the vertex has none. */
   height: number | null;
 }
 
@@ -58,12 +58,12 @@ export interface SightPoint extends MapPosition {
   height: number;
 }
 
-/** What is between the two ends, in the height's unit. */
+/** A line of sight between two ends, in the height's unit. */
 export interface Sight {
   /** `unsure`: what is left out could turn the answer; `undefined`: an end has no ground. */
   verdict: 'visible' | 'hidden' | 'unsure' | 'undefined';
   length: number;
-  /** Of the line above the ground, where it is least: from and to; null where there is no ground below it. */
+  /** The height of the line above the ground, where it is least: from and to; null where there is no ground below it. */
   clearance: { min: number; max: number; at: SightPoint } | null;
   /** Least clearance in radii of the first Fresnel zone; null without a frequency, or where it is not known. */
   fresnel: { ratio: number; at: SightPoint } | null;

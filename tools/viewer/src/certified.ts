@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is certified of all that is in sight: certificates of streams hold in the windows that were asked for.
+// The certificate of all that is in sight: certificates of streams hold in the windows that were asked for.
 import type { Certificate } from './decoder';
 
 export type Window = readonly [number, number, number, number];
 
-/** What holds within a window of the map, closed. */
+/** A certificate that holds within a window of the map, closed. */
 export interface CertifiedPart extends Certificate {
   window: Window;
 }
 
-/** What is certified of a mesh: of a place the least of the parts that hold it, elsewhere `otherwise`. */
+/** Certificates of a mesh: a place has the least of the parts that hold it, or else `otherwise`. */
 export interface Certified {
   parts: CertifiedPart[];
-  /** Of the whole terrain. */
+  /** The certificate of the whole terrain. */
   otherwise: Certificate;
 }
 
@@ -23,7 +23,7 @@ function holds(outer: Window, inner: Window): boolean {
 
 function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): number[] {
   const low = bounds[axis], high = bounds[axis + 2];
-  // What is thinner is the rounding of one edge that two windows have.
+  // A thinner cell is the rounding of one edge that two windows have.
   const least = 1e-9 * (high - low);
   const made = [low];
   for (const v of parts.flatMap((p) => [p.window[axis], p.window[axis + 2]]).sort((a, b) => a - b)) {

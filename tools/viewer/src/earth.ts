@@ -6,7 +6,7 @@ import type { Decoder } from './decoder';
 import type { Units } from './frame';
 import type { GroundFacts } from './module';
 
-/** What the stream was asked for: there its certificate holds. */
+/** The request of the stream: its certificate holds there. */
 export interface Request {
   window?: [number, number, number, number];
   error?: number;
@@ -21,7 +21,7 @@ export interface Told {
   request: Request;
 }
 
-/** What metadata tell; text that is none tells nothing. */
+/** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
   const all = (metadata ?? {}) as { ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: Request };
   const g = all.ground;
@@ -47,7 +47,7 @@ export interface Earth {
   diameter: number;
   /** Metres of a map unit along x and along y, at parallels from south to north. */
   scales: Array<{ y: number; x: number; perY: number }>;
-  /** Of the terrain along its middle parallel and its middle meridian, metres; null: not known. */
+  /** Lengths of the terrain along its middle parallel and its middle meridian, metres; null: not known. */
   size: [number, number] | null;
 }
 

@@ -13,7 +13,7 @@ export function number(value: number, digits = 4): string {
   return (value < 0 ? '\u2212' : '') + grouped + (part === undefined ? '' : `.${part}`);
 }
 
-/** As number(), but never below the value: for bounds. */
+/** A number as number() writes it, but never below the value: for bounds. */
 export function bound(value: number, digits = 3): string {
   if (!(value > 0) || !Number.isFinite(value)) return number(value, digits);
   const step = 10 ** (Math.floor(Math.log10(value)) - digits + 1);

@@ -2,7 +2,7 @@
 //
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
 // middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
-// the whole terrain. What the page tells of lengths comes from the engine.
+// the whole terrain. Lengths that the page tells come from the engine.
 import type { Facts } from './decoder';
 import { type Earth, scaleAt } from './earth';
 
@@ -42,7 +42,7 @@ export class Frame {
     this.middleX = f.originX + f.stepX * (f.minX + f.maxX) / 2;
     this.middleY = f.originY + f.stepY * (f.minY + f.maxY) / 2;
     this.isDegrees = earth.isDegrees;
-    // That of its middle parallel.
+    // The scale of its middle parallel.
     const [x, y] = scaleAt(earth, this.middleY);
     this.scaleX = Math.max(x, 0.01 * y);
     this.scaleY = y;

@@ -356,7 +356,7 @@ function certaintyNote(certainty: Certainty, sign: string): string {
     (certainty.of === 'terrain' ? ' of the source' : ' of the full terrain');
 }
 
-/** Of the line above the ground, from `min` to `max` metres. */
+/** A note on the line above the ground, from `min` to `max` metres. */
 function clearanceNote(min: number, max: number): string {
   const told = (a: number, b: number): string => {
     const [low, high] = [Math.min(a, b), Math.max(a, b)];

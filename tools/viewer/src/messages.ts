@@ -43,7 +43,7 @@ export interface Viewshed {
   window: [number, number, number, number];
 }
 
-/** Of whose heights: the mesh that is shown, or the full terrain. `isExact`: they are the source's. */
+/** The certainty of heights of the mesh that is shown, or of the full terrain. `isExact`: they are the source's. */
 export interface Certainty extends Certificate {
   of: 'mesh' | 'terrain';
   isExact: boolean;
@@ -67,7 +67,7 @@ export interface Status {
   /** Received, and to come as far as the host says; 0 when it does not. */
   bytes: number;
   bytesInAll: number;
-  /** Of the mesh that was handed over last. */
+  /** The certificates of the mesh that was handed over last. */
   certified: Certified;
   /** `held`: there is more, which the error, the number of vertices or the service keeps away. */
   state: 'loading' | 'complete' | 'held' | 'cut' | 'damaged';
@@ -88,7 +88,7 @@ export type FromWorker =
   | { kind: 'status'; status: Status }
   | { kind: 'answer'; ticket: number; answer: Answer }
   | { kind: 'refused'; ticket: number; message: string }
-  /** What went wrong before does not any more. */
+  /** The trouble that was told before is over. */
   | { kind: 'mended' }
-  /** What went wrong, as a sentence; `final`: nothing more will come. */
+  /** The trouble, as a sentence; `final`: nothing more will come. */
   | { kind: 'error'; title: string; message: string; final: boolean };

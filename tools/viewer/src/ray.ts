@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How a line of sight and its Fresnel zone are drawn. What they meet is the engine's answer.
+// How a line of sight and its Fresnel zone are drawn. The engine answers what they meet.
 
 /** Curvature as the engine has it: 1 less 1/7 for refraction. */
 const coefficient = 0.85714;
@@ -11,7 +11,7 @@ export function curvatureDrop(length: number, share: number, earthDiameter: numb
   return earthDiameter > 0 ? coefficient / earthDiameter * length * length * share * (share - 1) : 0;
 }
 
-/** In metres. */
+/** The radius in metres. */
 export function fresnelRadius(frequency: number, length: number, share: number): number {
   return Math.sqrt(Math.max(0, (speedOfLight / frequency) * length * share * (1 - share)));
 }

@@ -34,7 +34,7 @@ class Received {
   readonly decoder: Decoder;
   readonly have: Serving[] = [];
   readonly whole: Wanted[] = [];
-  /** What each serving is certified for, in its window. */
+  /** The certificate of each serving, in its window. */
   private readonly parts: CertifiedPart[] = [];
   /** The window of the stream that is coming, once it has begun. */
   private coming: Wanted['window'] | null = null;
@@ -111,7 +111,7 @@ export class ServedView {
   }
 
   get decoder(): Decoder { return this.shown.decoder; }
-  /** What is certified of `decoder`. */
+  /** The certificates of the mesh of `decoder`. */
   get certified(): Certified { return this.shown.certified; }
   /** Why nothing comes at the moment. */
   waitsFor: string | undefined;

@@ -32,13 +32,13 @@ class Viewer {
   private readonly inquiry: Inquiry;
   private readonly worker: Worker;
   private frame: Frame | null = null;
-  /** With what is certified of all that is in sight. */
+  /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate }) | null = null;
   private isServed: boolean;
   private linkTimer = 0;
   private viewTimer = 0;
   private spokenState = '';
-  /** What is told of went wrong, and may mend by itself. */
+  /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
   private certified: Certified | null = null;
@@ -120,7 +120,7 @@ class Viewer {
     this.spokenState = status.state;
   }
 
-  /** Of all that is in sight; before there is a terrain, of nothing. */
+  /** The certificate of all that is in sight; before there is a terrain, of nothing. */
   private get certificate(): Certificate {
     const { certified, frame } = this;
     if (certified === null || frame === null) return { error: Infinity, deviation: Infinity };

@@ -43,7 +43,7 @@ function tell(error: unknown, final: boolean): void {
 class Session {
   private frame: Frame | null = null;
   private told: Told = toldBy(null);
-  /** What is certified of the mesh that was handed over last. */
+  /** The certificates of the mesh that was handed over last. */
   private drawnCertified: Certified = { parts: [], otherwise: { error: Infinity, deviation: Infinity } };
   private readonly still: StaticStream;
   private served: ServedView | null = null;
@@ -193,7 +193,7 @@ class Session {
     say({ kind: 'terrain', facts, units, earth, metadata, name });
   }
 
-  /** What is certified of the mesh that is there. */
+  /** The certificates of the mesh that is there. */
   private get certified(): Certified {
     if (this.served !== null) return this.served.certified;
     const decoder = this.current;

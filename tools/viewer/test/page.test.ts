@@ -573,7 +573,7 @@ test('keys tilt, leave no ring, and the pointer costs nothing while it moves', a
     w.picks = 0;
     document.getElementById('place')!.textContent = '';
     relief.pick = (x, y) => { ++w.picks; return pick(x, y); };
-    // As a pointer that moves without a rest.
+    // A pointer moves without a rest.
     for (let i = 0; i < 15; ++i) {
       const move = { clientX: 500 + 10 * i, clientY: 380, pointerType: 'mouse', bubbles: true };
       document.getElementById('relief')!.dispatchEvent(new PointerEvent('pointermove', move));
