@@ -313,7 +313,7 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
       refuse(with({"--memory", size}), 2, std::string("--memory: not a size: ") + size);
     }
   }
-  refuse({"volume"}, 2, "--level H or --against OTHER");
+  refuse({"volume"}, 2, "--level H..., --interval D or --against OTHER");
   refuse({"volume", "--level", "1", "--against", store}, 2, "--against");
   refuse({"volume", "--level", "nan"}, 2, "--level: must be a finite number");
   refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1");

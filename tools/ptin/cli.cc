@@ -152,6 +152,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin volume dem.ptin --level 1000\n"
      "  ptin volume lake.ptin --interval 0.5 -o stages.csv\n"
+     "  ptin volume lake.ptin --level 410 411 412 413 -o stages.svg\n"
      "  ptin volume before.ptin --against after.ptin --polygon pit.gpkg\n"
      "  ptin volume lake.ptin --level 412.5 --window 385000 3790000 390000 3795000 --error 2 "
      "--json\n",

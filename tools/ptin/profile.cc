@@ -183,7 +183,7 @@ PlotUnits plot_units_of(const CrsFacts& crs) {
 void write_profile(const ProfileOptions& options, bool json, const ProfileResult& profile,
                    const std::vector<std::string>& ids, const CrsFacts& crs) {
   const AnswerOptions& answer = options.answer;
-  const AnswerForm form = form_of(answer, json, true);
+  const AnswerForm form = form_of(answer, json, {.plot = true});
   if (form == AnswerForm::kLayer && options.stations_only) {
     write_stations(answer, profile, ids, crs);
   } else if (form == AnswerForm::kLayer) {
@@ -228,7 +228,8 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
 }
 
 int run_profile(const ProfileOptions& options, const Context& context) {
-  if (const AnswerForm form = form_of(options.answer, context.json, true);  // before the work
+  if (const AnswerForm form =
+          form_of(options.answer, context.json, {.plot = true});  // before the work
       form == AnswerForm::kPlot && options.stations_only) {
     refuse("a plot draws the ground between stations too; leave --stations-only out",
            options.answer.output);
@@ -293,7 +294,7 @@ Action declare_profile(CLI::App& app, Context& context) {
   add_detail_options(app, options->detail, "",
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer, true);
+  add_answer_options(app, options->answer, {.plot = true});
   return [options, &context] { return run_profile(*options, context); };
 }
 

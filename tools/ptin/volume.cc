@@ -19,6 +19,7 @@
 #include "tools/facts/human.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
+#include "tools/plot/volume_plot.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/source_counts.h"
@@ -27,6 +28,8 @@
 namespace ptin::tools {
 
 namespace {
+
+constexpr AnswerKinds kAnswerKinds{.layer = false, .plot = true};
 
 struct VolumeOptions {
   TerrainOptions terrain;
@@ -230,10 +233,9 @@ int run_volume(const VolumeOptions& options, const Context& context) {
                 "a volume is measured against --level H..., --interval D or --against OTHER; give "
                 "one of them");
   }
-  const AnswerForm form = form_of(options.answer, context.json);
-  if (form == AnswerForm::kLayer) refuse("volumes are a table; write .csv", options.answer.output);
-  if (form == AnswerForm::kCsv && !options.against.empty()) {
-    refuse("a table has a row for each level, and another terrain has none; leave -o out",
+  const AnswerForm form = form_of(options.answer, context.json, kAnswerKinds);
+  if (!options.answer.output.empty() && !options.against.empty()) {
+    refuse("a table or a plot is of levels, and another terrain has none; leave -o out",
            options.answer.output);
   }
   check_detail(options.detail);
@@ -267,8 +269,13 @@ int run_volume(const VolumeOptions& options, const Context& context) {
              ": all volumes are 0; ask for another --window or --polygon",
          context);
   }
-  const bool is_table = results.size() > 1 || form == AnswerForm::kCsv;
-  if (is_table) write_csv(options.answer, form, context.json, csv_of(results, levels));
+  const bool is_table = results.size() > 1 || !options.answer.output.empty();
+  if (form == AnswerForm::kPlot) {
+    plot_volumes(options.answer.output, options.answer.overwrite, results, levels,
+                 {unit_of_ground(crs), crs.vertical_unit});
+  } else if (is_table) {
+    write_csv(options.answer, form, context.json, csv_of(results, levels));
+  }
   if (context.json) {
     print_answer(results, levels, options, terrain, other ? &*other : nullptr, crs,
                  asked.transformed);
@@ -296,7 +303,7 @@ Action declare_volume(CLI::App& app, Context& context) {
                      "Measure the TINs of the N most important vertices; volumes come with "
                      "intervals");
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer);
+  add_answer_options(app, options->answer, kAnswerKinds);
   app.add_option(
          "--threads", options->threads,
          "Threads (default: one a processor that affinity and cgroups leave this process);\n"
