@@ -136,12 +136,12 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin stream dem.ptin -o dem.ptins && ptin viewer -o site --stream dem.ptins\n"
      "  ptin viewer -o site && python3 -m http.server --directory site\n",
      declare_viewer},
-    {"highest", "Find the highest or lowest point of a window",
+    {"highest", "Find the highest or lowest point of a window or a polygon",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
      "Examples:\n"
      "  ptin highest dem.ptin\n"
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
-     "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 --lowest\n",
+     "  ptin highest dem.ptin --polygon park.gpkg --lowest\n",
      declare_highest},
     {"volume", "Measure cut and fill against a level, or between two terrains",
      "Cut is what lies above the level or above OTHER, fill what lies below, net is cut less fill. "
