@@ -304,8 +304,8 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
       arguments.insert(arguments.end(), more.begin(), more.end());
       return arguments;
     };
-    refuse(with({"--error", "-1"}), 2, "--error must be a number >= 0");
-    refuse(with({"--error", "nan"}), 2, "--error must be a number >= 0");
+    refuse(with({"--error", "-1"}), 2, "--error: must be a number >= 0");
+    refuse(with({"--error", "nan"}), 2, "--error: must be a number >= 0");
     refuse(with({"--error", "1", "--vertices", "9"}), 2, "--vertices");
     refuse(with({"--vertices", "1"}), 2, "ask for at least that many");
     refuse(with({"--vertices", "-1"}), 2, "--vertices");

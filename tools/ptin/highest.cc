@@ -50,12 +50,11 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 }
 
 int run_highest(const HighestOptions& options, const Context& context) {
-  check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
+  const CrsFacts crs = crs_facts(terrain.store());
   const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
   tell_transformed(asked.transformed, "the polygon", crs, context);
-  const CrsFacts crs = crs_facts(terrain.store());
   HighestRequest request;
   request.region = asked.region;
   request.lowest = options.lowest;
@@ -75,8 +74,8 @@ int run_highest(const HighestOptions& options, const Context& context) {
       {"certified_error", result.certified_error},
       {"certified_deviation", result.certified_deviation},
       {"border_moved_at_most", border_move_json(terrain.store(), result.certified_error)},
-      {"transformed", transformed_json(asked.transformed)},
       {"exact", result.exact},
+      {"transformed", transformed_json(asked.transformed)},
       {"units", units_json(crs)},
       {"cost", cost_json(result.cost)}};
   if (result.state == PointState::kSurface) {
@@ -102,7 +101,7 @@ Action declare_highest(CLI::App& app, Context& context) {
       ->check(CLI::Range(1U, 1000000U))
       ->capture_default_str();
   add_detail_options(
-      app, options->detail, "; the height comes with an interval",
+      app, options->terrain.measures, options->detail, "; the height comes with an interval",
       "The highest of the TIN of the terrain's N most important vertices; its height "
       "comes with an interval");
   add_memory_option(app, options->memory);

@@ -55,7 +55,6 @@ void check_options(const IsolineOptions& options, const Context& context) {
     throw Error(ErrorCode::invalid_argument,
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
-  check_detail(options.detail);
   static_cast<void>(isoline_format_of(options.output));
   if (options.polygons) check_isoline_fields(options.output, "--polygons");
   if (options.output != "-") {
@@ -284,10 +283,10 @@ Action declare_isoline(CLI::App& app, Context& context) {
   app.get_option("--tmp")->description(
       "Folder for temporary files: lines that do not fit in --memory (default: OUT's folder), "
       "--index spatialindex (default: beside FILE)");
-  add_level_options(app, options->levels, "Heights, in the height's unit",
-                    "Every multiple of D, from the base");
+  add_level_options(app, options->terrain.measures, options->levels,
+                    "Heights, in the height's unit", "Every multiple of D, from the base");
   add_region_options(app, options->region, RegionKinds::kWithInside);
-  add_detail_options(app, options->detail, "",
+  add_detail_options(app, options->terrain.measures, options->detail, "",
                      "The isolines of the TIN of the terrain's N most important vertices");
   auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");
   app.add_flag("-p,--polygons", options->polygons,

@@ -331,7 +331,8 @@ Action declare_sight(CLI::App& app, Context& context) {
                  "(hertz); 1 MHz at least")
       ->excludes(verdict)
       ->type_name("F");
-  add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
+  add_detail_options(app, options->terrain.measures, options->detail,
+                     ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "
                      "answer undecided");
   app.add_option(

@@ -238,7 +238,6 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     refuse("a table or a plot is of levels, and another terrain has none; leave -o out",
            options.answer.output);
   }
-  check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   CrsFacts crs = crs_facts(terrain.store());
@@ -290,7 +289,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 Action declare_volume(CLI::App& app, Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
   add_terrain_options(app, options->terrain, false);
-  add_level_options(app, options->levels,
+  add_level_options(app, options->terrain.measures, options->levels,
                     "Heights, in the height's unit; of several the answer is a table",
                     "Every multiple of D, from the base");
   app.add_option("--against", options->against,
@@ -299,7 +298,8 @@ Action declare_volume(CLI::App& app, Context& context) {
       ->excludes(app.get_option("--level"))
       ->excludes(app.get_option("--interval"));
   add_region_options(app, options->region, RegionKinds::kWithInside);
-  add_detail_options(app, options->detail, ", of either file; volumes come with intervals",
+  add_detail_options(app, options->terrain.measures, options->detail,
+                     ", of either file; volumes come with intervals",
                      "Measure the TINs of the N most important vertices; volumes come with "
                      "intervals");
   add_memory_option(app, options->memory);
