@@ -203,27 +203,33 @@ void print_text(const VolumeResult& result, const VolumeOptions& options, const 
   const std::string than = options.against.empty() ? "the level" : options.against;
   const std::string& here = options.terrain.file;
   const auto volume = [&](const char* name, const CertifiedVolume& v, const std::string& where) {
-    std::printf("%-5s %s cubic %s", name, grouped_number(v.value).c_str(), known.c_str());
+    const double off = std::max({result.rounding, v.high - v.value, v.value - v.low});
+    std::printf("%-5s %s cubic %s", name, grouped_number(v.value, off).c_str(), known.c_str());
     if (!result.exact) {
-      std::printf(", the source's between %s and %s", grouped_number(v.low).c_str(),
-                  grouped_number(v.high).c_str());
+      std::printf(", the source's between %s and %s", grouped_number(v.low, off).c_str(),
+                  grouped_number(v.high, off).c_str());
     }
     std::printf("%s\n", where.c_str());
   };
   volume("cut", result.cut, ": " + here + " is above " + than + ", material to take away");
   volume("fill", result.fill, ": " + here + " is below " + than + ", material to bring");
   volume("net", result.net, ": cut less fill");
-  std::printf("area  %s square %s: cut %s, fill %s; void %s\n",
-              grouped_number(result.surface_area).c_str(), known.c_str(),
-              grouped_number(result.cut_area).c_str(), grouped_number(result.fill_area).c_str(),
-              grouped_number(result.void_area).c_str());
+  const double off = 1e-9 * (result.surface_area + result.void_area);  // beyond what rounding does
+  const auto area = [off](double value) { return grouped_number(value, off); };
+  std::printf("area  %s square %s: cut %s, fill %s; void %s\n", area(result.surface_area).c_str(),
+              known.c_str(), area(result.cut_area).c_str(), area(result.fill_area).c_str(),
+              area(result.void_area).c_str());
   if (!options.against.empty()) {
     std::printf("      surface in %s alone %s, in %s alone %s\n", options.terrain.file.c_str(),
-                grouped_number(result.only_here_area).c_str(), options.against.c_str(),
-                grouped_number(result.only_other_area).c_str());
+                area(result.only_here_area).c_str(), options.against.c_str(),
+                area(result.only_other_area).c_str());
   }
   if (std::isfinite(result.mean_difference)) {
-    std::printf("mean  %s %s\n", grouped_number(result.mean_difference).c_str(), known.c_str());
+    const double of_net = std::max({2 * result.rounding, result.net.high - result.net.value,
+                                    result.net.value - result.net.low});
+    std::printf("mean  %s %s\n",
+                grouped_number(result.mean_difference, of_net / result.surface_area).c_str(),
+                known.c_str());
   }
 }
 
