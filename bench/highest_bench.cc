@@ -47,13 +47,13 @@ void Highest(benchmark::State& state) {
       random_windows(200, static_cast<double>(state.range(0)) * 1e-6);
   HighestRequest request;
   for (const Window& w : windows) {  // warm
-    request.window = w;
+    request.region = w;
     static_cast<void>(highest(*terrain(), request));
   }
   QueryCost cost;
   std::size_t asked = 0;
   for (auto _ : state) {
-    request.window = windows[asked++ % windows.size()];
+    request.region = windows[asked++ % windows.size()];
     const HighestResult result = highest(*terrain(), request);
     benchmark::DoNotOptimize(result.point.height);
     cost.records_applied += result.cost.records_applied;

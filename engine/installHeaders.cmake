@@ -89,6 +89,7 @@ set(public_headers
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h
+    engine/query/select/polygon_sides.h
     engine/query/select/predicate.h
     engine/query/select/query_limits.h
     engine/query/select/region.h

@@ -15,15 +15,15 @@ ErrorStatus status_of(ErrorCode code) noexcept {
     case ErrorCode::invalid_argument:
       return {2, 400};
     case ErrorCode::not_found:
-      return {3, 404};
+      return {3, 500};
     case ErrorCode::corruption:
       return {4, 500};
     case ErrorCode::unsupported_version:
       return {5, 500};
     case ErrorCode::io_error:
-      return {6, 503};
+      return {6, 500};
     case ErrorCode::resource_exhausted:
-      return {7, 503};
+      return {7, 413};
     case ErrorCode::cancelled:
       return {8, 503};
     case ErrorCode::internal:

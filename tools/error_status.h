@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The one table from error codes to the exit status of the program and the HTTP status that a
-// service built on the library would answer.
+// The one table from error codes to the exit status of the program and the HTTP status that the
+// service answers.
 #pragma once
 
 #include "engine/error.h"
@@ -14,10 +14,11 @@ inline constexpr int kExitDone = 0;
 /// answered.
 inline constexpr int kExitNegative = 1;
 
-/// Exit status and HTTP status of an error code.
+/// Exit status and HTTP status of an error code. Of a service the file that is missing, damaged or
+/// unreadable is its own, and what takes too much memory is the question.
 struct ErrorStatus {
   int exit;
-  int http;
+  unsigned http;
 };
 
 /// The row of `code`. Total: a value outside of the enum has the row of `internal`.

@@ -171,7 +171,7 @@ std::vector<KindOfQuestion> questions() {
        [](const Terrain& t, const Store& s) -> Asking {
          const MapPoint low = spot_at(s->facts(), 7, 7), high = spot_at(s->facts(), 8, 8);
          HighestRequest request;
-         request.window = Window{low.x, low.y, high.x, high.y};
+         request.region = Window{low.x, low.y, high.x, high.y};
          return [&t, request] { (void)highest(t, request); };
        }},
       {"Volume",

@@ -105,7 +105,7 @@ every_question() {
       {"highest",
        [](const Terrain& t, const QueryLimits& l) {
          HighestRequest request;
-         request.window = Window{at(0.4, 0.4).x, at(0.4, 0.4).y, at(0.6, 0.6).x, at(0.6, 0.6).y};
+         request.region = Window{at(0.4, 0.4).x, at(0.4, 0.4).y, at(0.6, 0.6).x, at(0.6, 0.6).y};
          request.limits = l;
          static_cast<void>(t.highest(request));
        }},

@@ -304,8 +304,8 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
       arguments.insert(arguments.end(), more.begin(), more.end());
       return arguments;
     };
-    refuse(with({"--error", "-1"}), 2, "--error must be a number >= 0");
-    refuse(with({"--error", "nan"}), 2, "--error must be a number >= 0");
+    refuse(with({"--error", "-1"}), 2, "--error: must be a number >= 0");
+    refuse(with({"--error", "nan"}), 2, "--error: must be a number >= 0");
     refuse(with({"--error", "1", "--vertices", "9"}), 2, "--vertices");
     refuse(with({"--vertices", "1"}), 2, "ask for at least that many");
     refuse(with({"--vertices", "-1"}), 2, "--vertices");
@@ -313,7 +313,7 @@ TEST(CliBadInput, QuestionsThatMeanNothing) {
       refuse(with({"--memory", size}), 2, std::string("--memory: not a size: ") + size);
     }
   }
-  refuse({"volume"}, 2, "--level H or --against OTHER");
+  refuse({"volume"}, 2, "--level H..., --interval D or --against OTHER");
   refuse({"volume", "--level", "1", "--against", store}, 2, "--against");
   refuse({"volume", "--level", "nan"}, 2, "--level: must be a finite number");
   refuse({"volume", "--level", "1", "--memory", "1K"}, 7, "more than the limit of 1");

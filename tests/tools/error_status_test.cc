@@ -11,10 +11,11 @@ namespace {
 TEST(ErrorStatus, HasTheDocumentedRowForEveryCode) {
   const struct {
     ErrorCode code;
-    int exit, http;
-  } rows[] = {{ErrorCode::invalid_argument, 2, 400}, {ErrorCode::not_found, 3, 404},
+    int exit;
+    unsigned http;
+  } rows[] = {{ErrorCode::invalid_argument, 2, 400}, {ErrorCode::not_found, 3, 500},
               {ErrorCode::corruption, 4, 500},       {ErrorCode::unsupported_version, 5, 500},
-              {ErrorCode::io_error, 6, 503},         {ErrorCode::resource_exhausted, 7, 503},
+              {ErrorCode::io_error, 6, 500},         {ErrorCode::resource_exhausted, 7, 413},
               {ErrorCode::cancelled, 8, 503},        {ErrorCode::internal, 70, 500}};
   for (const auto& row : rows) {
     EXPECT_EQ(status_of(row.code).exit, row.exit) << to_string(row.code);

@@ -184,6 +184,10 @@ TEST_F(JsonNames, AreThoseOfTheLists) {
       "area.geojson", R"({"type":"Polygon","coordinates":[[)" + path + ",[-116.998,36.137]]]}");
   question({"volume", store, "--level", "90", "--polygon", area, "-o", file("stages.csv")});
   question({"volume", store, "--level", "80", "90"});
+  question({"highest", store, "--polygon", area});
+  question({"isoline", store, "--level", "90", "-o", file("c.geojson"), "-q", "--polygon", area});
+  question({"isoline", store, "--level", "90", "--polygons", "-o", file("d.geojson"), "-q",
+            "--polygon", area});
   question({"export", store, "-o", file("part.ply"), "-q", "--polygon", area});
   question({"refine", store, "--polygon", area, "--cut", "-o", file("part.obj")});
   question({"profile", store, "--line",

@@ -231,6 +231,15 @@ TEST(VolumeReport, SaysWhichFileIsWhichInNumbersThatCanBeRead) {
   EXPECT_EQ(grouped_number(-123), "-123");
   EXPECT_EQ(grouped_number(0.125), "0.125");
   EXPECT_EQ(grouped_number(1e20), "1e+20");
+  // With as many digits as are certain, and no more than people want.
+  EXPECT_EQ(grouped_number(83780376.2, 0.01), "83,780,376");
+  EXPECT_EQ(grouped_number(1234.56789, 1e-6), "1,234.568");
+  EXPECT_EQ(grouped_number(1234.56789, 0.04), "1,234.6");
+  EXPECT_EQ(grouped_number(-1234.56789, 20), "-1,235");
+  EXPECT_EQ(grouped_number(0.0123456789, 1e-12), "0.012346");
+  EXPECT_EQ(grouped_number(12.5, 0), "12.5");
+  EXPECT_EQ(grouped_number(0, 1), "0");
+  EXPECT_EQ(grouped_number(1e-9, 0), "1e-09");
   EXPECT_EQ(plural_of("US survey foot"), "US survey feet");
   EXPECT_EQ(plural_of("metre"), "metres");
 }

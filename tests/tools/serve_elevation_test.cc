@@ -55,6 +55,30 @@ TEST_F(Serve, AnswersElevationsToClientsOfOthers) {
   EXPECT_EQ(get("/v1/nobody?locations=34.3,1").json()["status"], "INVALID_REQUEST");
 }
 
+TEST_F(Serve, TakesPositionsAsArraysOfJsonAndASlashBehindTheName) {
+  const json want = get("/v1/mountains?locations=" + encoded("34.34,-118.3|34.35,-118.29")).json();
+  ASSERT_EQ(want["results"].size(), 2U);
+  for (const json& locations :
+       {json{{34.34, -118.3}, {34.35, -118.29}}, json{"34.34,-118.3", "34.35,-118.29"},
+        json{{{"lat", 34.34}, {"lng", -118.3}}, {{"lat", 34.35}, {"lng", -118.29}}},
+        json{{{"latitude", 34.34}, {"longitude", -118.3}},
+             {{"latitude", 34.35}, {"longitude", -118.29}}}}) {
+    EXPECT_EQ(served_->post("/v1/mountains", {{"locations", locations}}).json(), want) << locations;
+    EXPECT_EQ(served_->post("/v1/mountains/", {{"locations", locations}}).json(), want);
+  }
+  for (const char* broken : {"[[34.34]]", "[[1,2,3]]", "[[91,0]]", "[{\"lat\":1}]",
+                             "[[\"1\",\"2\"]]", "[1,2]", "[[null,1],[1,2]]", "[\"1;2\",\"1,2\"]"}) {
+    const auto refused = served_->post("/v1/mountains", {{"locations", json::parse(broken)}});
+    EXPECT_EQ(refused.status, 400) << broken;
+    EXPECT_EQ(refused.json()["parameter"], "locations") << refused.body;
+  }
+  EXPECT_EQ(get("/v1/mountains/?locations=34.34,-118.3").json(),
+            get("/v1/mountains?locations=34.34,-118.3").json());
+  EXPECT_EQ(get("/v1/mountains,coast/?locations=10,10").status, 200);
+  EXPECT_EQ(get("/v1/mountains//?locations=34.34,-118.3").status, 404);
+  EXPECT_EQ(get("/v1/?locations=34.34,-118.3").status, 404);
+}
+
 TEST_F(Serve, AnswersOthersClientsInTheirForm) {
   const std::string at = "locations=34.34,-118.3";
   EXPECT_EQ(get("/v1/mountains?sensor=false&language=de&region=at&" + at).json()["status"], "OK");

@@ -22,7 +22,7 @@ TEST_F(Serve, DrawsIsolinesAsTheLibraryDoes) {
   const Window w = middle_of_bounds(*mountains_, 0.3);
   IsolineRequest request;
   request.levels = {800, 1000};
-  request.window = w;
+  request.region = w;
   request.detail.tolerance = 2;
   const Isolines expected = mountains_->isolines(request);
   const json told =

@@ -76,7 +76,10 @@ TEST(Usage, SaysHowManyValuesThereAreAndWhich) {
                  "terrain.ptin is a word too many: ptin info takes FILE and options");
   expect_refusal(run_ptin({"locate", "a.ptin", "1", "2", "3", "4"}), 2,
                  "X Y are 2 values with a space between, and 4 were given: 1 2 3 4");
-  expect_refusal(run_ptin({"highest", "a.ptin", "--error", "5m"}), 2, "--error: 5m is no number");
+  expect_refusal(run_ptin({"highest", "a.ptin", "--error", "five"}), 2,
+                 "--error: must be a number >= 0, in the height's unit, or with a unit behind it");
+  expect_refusal(run_ptin({"sight", "a.ptin", "1", "2", "3", "4", "5", "6", "--curvature", "5m"}),
+                 2, "--curvature: 5m is no number");
   expect_refusal(run_ptin({"refine", "a.ptin", "--vertices", "1.5", "-o", "a.ply"}), 2,
                  "--vertices: 1.5 is no whole number");
 }

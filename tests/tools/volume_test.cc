@@ -56,14 +56,48 @@ TEST_F(VolumeProgram, MeasuresSeveralLevelsInOneAnswer) {
     json one = ask({plane, "--level", level.at("level").dump()});
     for (const auto& [name, value] : level.items()) EXPECT_EQ(one.at(name), value) << name;
   }
-  const testing::Outcome table = testing::run_ptin({"volume", plane, "--level", "8", "16"});
+}
+
+TEST_F(VolumeProgram, WritesSeveralLevelsAsATable) {
+  const std::string plane = store("plane", recipe([](int column, int) { return double(column); }));
+  const testing::Outcome table = run_ptin({"volume", plane, "--level", "16", "8"});
   EXPECT_EQ(testing::lines_in(table.out), 3u) << table.out;
   EXPECT_TRUE(table.out.starts_with("level,cut,cut_low,cut_high,fill,")) << table.out;
+  EXPECT_NE(table.out.find("\n16,"), std::string::npos) << table.out;
   const std::string file = plane + ".csv";
-  testing::expect_done({"volume", plane, "--level", "8", "16", "-o", file, "-q"});
+  testing::expect_done({"volume", plane, "--level", "16", "8", "-o", file, "-q"});
   EXPECT_EQ(testing::read_file(file), table.out);
-  EXPECT_EQ(testing::run_ptin({"volume", plane, "--interval", "0.0001"}).status, 2);
-  EXPECT_EQ(testing::run_ptin({"volume", plane, "--level", "8", "-o", "-"}).status, 2);
+  const testing::Outcome one = run_ptin({"volume", plane, "--level", "8", "-o", "-"});
+  EXPECT_EQ(testing::lines_in(one.out), 2u) << one.out;
+  for (const char* name : {".gpkg", ".xyz"}) {
+    const Outcome other = run_ptin({"volume", plane, "--level", "8", "-o", plane + name});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("end the name in .csv, .png, .svg, .pdf"), std::string::npos)
+        << other.err;
+  }
+  EXPECT_EQ(run_ptin({"volume", plane, "--against", plane, "-o", file}).status, 2);
+  EXPECT_EQ(run_ptin({"volume", plane, "--interval", "0.0001"}).status, 2);
+  EXPECT_EQ(run_ptin({"volume", plane, "--level", "8", "--json", "-o", "-"}).status, 2);
+}
+
+TEST_F(VolumeProgram, PlotsAStageStorageCurve) {
+  const std::string plane = store("plane", recipe([](int column, int) { return double(column); }));
+  const auto plot = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"volume", plane, "-o", plane + name, "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    testing::expect_done(words);
+    return testing::read_file(plane + name);
+  };
+  const std::string exact = plot("1.svg", {"--interval", "8"});
+  EXPECT_TRUE(exact.ends_with("</svg>\n"));
+  EXPECT_EQ(exact.find("fill-opacity:0.35"), std::string::npos);
+  EXPECT_TRUE(plot("2.png", {"--level", "16", "0", "32", "8", "24"}) ==
+              plot("5.png", {"--interval", "8"}))
+      << "in any order";
+  EXPECT_NE(plot("3.svg", {"--interval", "8", "--error", "3"}).find("fill-opacity:0.35"),
+            std::string::npos)
+      << "the band of the certificate";
+  EXPECT_TRUE(plot("4.pdf", {"--level", "8"}).starts_with("%PDF-"));
 }
 
 /// Right-angled prisms and a pyramid, whose volumes are known.

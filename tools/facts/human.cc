@@ -23,15 +23,43 @@ std::string counted(std::uint64_t n, const std::string& one, const std::string& 
   return grouped(n) + " " + (n == 1 ? one : plural.empty() ? one + "s" : plural);
 }
 
+namespace {
+
+/// A decimal number with commas between groups of three digits before the point.
+std::string in_groups(std::string text) {
+  const std::size_t first = text.starts_with('-') ? 1 : 0;
+  std::size_t at = std::min(text.find('.'), text.size());
+  for (; at > first + 3; at -= 3) text.insert(at - 3, ",");
+  return text;
+}
+
+}  // namespace
+
 std::string grouped_number(double value) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.10g", value == 0 ? 0.0 : value);
   std::string text = digits;
   if (!std::isfinite(value) || text.find('e') != std::string::npos) return text;
-  const std::size_t first = text.starts_with('-') ? 1 : 0;
-  std::size_t at = std::min(text.find('.'), text.size());
-  for (; at > first + 3; at -= 3) text.insert(at - 3, ",");
-  return text;
+  return in_groups(std::move(text));
+}
+
+std::string grouped_number(double value, double uncertain) {
+  constexpr int kDigits = 7;
+  const double size = std::abs(value);
+  if (!(size >= 1e-4 && size < 1e15)) return grouped_number(value);
+  const int before = std::max(1, static_cast<int>(std::floor(std::log10(size))) + 1);
+  const double certain =
+      uncertain > 0 ? std::floor(-std::log10(2 * uncertain)) : static_cast<double>(kDigits);
+  const int decimals =
+      static_cast<int>(std::clamp(certain, 0.0, std::max(0.0, 1.0 * kDigits - before)));
+  char digits[40];
+  std::snprintf(digits, sizeof digits, "%.*f", decimals, value);
+  std::string text = digits;
+  if (decimals > 0) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+  }
+  return in_groups(std::move(text));
 }
 
 std::string plural_of(const std::string& unit) {

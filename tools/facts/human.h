@@ -16,6 +16,10 @@ namespace ptin::tools {
                                   const std::string& plural = {});
 /// Ten significant digits, in groups of three before the point: "83,780,376.2".
 [[nodiscard]] std::string grouped_number(double value);
+/// The same with the digits behind the point that are certain, and no more than seven digits where some
+/// are: "83,780,376", "1,234.5".
+/// @param uncertain  How far the value may be off, at most.
+[[nodiscard]] std::string grouped_number(double value, double uncertain);
 /// Several of a unit: "metres", "US survey feet".
 [[nodiscard]] std::string plural_of(const std::string& unit);
 /// Bytes as "3.2 MiB"; below 1024 "512 bytes".

@@ -43,19 +43,23 @@ enum class NumberRange : std::uint8_t {
   }
 }
 
+/// "a finite number > 0".
+[[nodiscard]] inline std::string words_of(NumberRange range) {
+  constexpr const char* kWords[] = {"a finite number", "a finite number >= 0",
+                                    "a finite number > 0", "a number >= 0"};
+  return kWords[static_cast<std::size_t>(range)];
+}
+
 /// Refuses a number beyond the range: "--level: must be a finite number, in the height's unit; nan is
 /// none". What is no number CLI11 refuses.
 /// @param unit  "in map units"; may be empty.
 [[nodiscard]] inline CLI::Validator numbers(NumberRange range, const std::string& unit) {
-  constexpr const char* kWords[] = {"a finite number", "a finite number >= 0",
-                                    "a finite number > 0", "a number >= 0"};
-  const std::string expected = kWords[static_cast<std::size_t>(range)];
-  return {[range, expected, unit](const std::string& text) {
+  return {[range, unit](const std::string& text) {
             char* end = nullptr;
             const double number = std::strtod(text.c_str(), &end);
             const bool is_number = end != text.c_str() && *end == '\0';
             if (!is_number || is_in(range, number)) return std::string();
-            return "must be " + expected + (unit.empty() ? "" : ", " + unit) + "; " + text +
+            return "must be " + words_of(range) + (unit.empty() ? "" : ", " + unit) + "; " + text +
                    " is none";
           },
           ""};

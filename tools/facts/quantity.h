@@ -17,13 +17,19 @@ struct Quantity {
 /// "5.8 GHz", "1e3km". None where the text does not begin with a finite number.
 [[nodiscard]] std::optional<Quantity> quantity_of(const std::string& text);
 
-/// A length as options take it.
+/// A length or a height as options take it, of any sign.
 struct Length {
-  double number = 0.0;  ///< > 0; metres where it is one over ground.
-  bool is_on_ground =
-      false;  ///< It was given in m, km or ft: over ground, whatever the map unit is.
+  double number = 0.0;  ///< As written.
+  double metres = 0.0;  ///< Of the unit behind it; 0: there was none.
+
+  [[nodiscard]] bool has_unit() const noexcept { return metres > 0; }
+  /// The same in a unit of so many metres. The two feet, which differ by two millionths, are one: a
+  /// foot is the one of who is asked.  REQUIRES: has_unit().
+  [[nodiscard]] double in(double metres_of_unit) const noexcept;
 };
-/// None where the text is no number above 0, or has another unit behind it.
+/// None where the text is no number, or has a unit behind it that is none of length.
 [[nodiscard]] std::optional<Length> length_of(const std::string& text);
+/// Units that length_of() knows, for help and refusals: "m, km, ft".
+[[nodiscard]] std::string known_length_units();
 
 }  // namespace ptin::tools

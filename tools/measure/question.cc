@@ -181,7 +181,7 @@ Answer Questions::ask(const Question& question, const Terrain& terrain,
     case QuestionKind::kIsoline25th: {
       IsolineRequest request;
       request.levels = {question.level};
-      request.window = question.window;
+      request.region = question.window;
       request.detail = detail_;
       request.limits = limits;
       return ask_isoline(terrain, request);

@@ -243,9 +243,9 @@ void Panel::draw_axes() {
                                            {a.left, a.bottom},
                                            {a.left, a.top}}},
                {});
-  canvas_.text({(a.left + a.right) / 2, a.bottom + 34}, lengths.title("distance"),
+  canvas_.text({(a.left + a.right) / 2, a.bottom + 34}, lengths.title(scales_.across),
                {TextAnchor::kMiddle});
-  canvas_.text({18, (a.top + a.bottom) / 2}, scales_.heights.title("height"),
+  canvas_.text({18, (a.top + a.bottom) / 2}, scales_.heights.title(scales_.up),
                {.anchor = TextAnchor::kMiddle, .goes_up = true});
 }
 

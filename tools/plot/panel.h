@@ -27,6 +27,7 @@ struct PanelScales {
   double low = 0.0;     ///< Of the axis of heights; below `high`.
   double high = 1.0;
   ShownUnit lengths, heights;
+  std::string across = "distance", up = "height";  ///< What the axes are of.
 
   /// Scales for lines of at most this length, and heights of any number.
   /// @param low, high  Infinite (low above high): there is no ground.

@@ -10,19 +10,20 @@
 
 namespace ptin::tools {
 
-void add_answer_options(CLI::App& app, AnswerOptions& options, bool has_plot) {
-  app.add_option("-o,--output", options.output,
-                 "Write .csv, a layer (" + known_vector_extensions() + ")" +
-                     (has_plot ? ",\na plot (" + known_picture_extensions() + ")" : "") +
-                     ", or - for\nGeoJSON on stdout; default: CSV to stdout")
-      ->type_name("OUT");
+void add_answer_options(CLI::App& app, AnswerOptions& options, AnswerKinds kinds) {
+  std::string help = "Write .csv";
+  if (kinds.layer) help += ", a layer (" + known_vector_extensions() + ")";
+  if (kinds.plot) help += ",\na plot (" + known_picture_extensions() + ")";
+  help += kinds.layer ? ", or - for\nGeoJSON on stdout; default: CSV to stdout"
+                      : ", or - for CSV on\nstdout";
+  app.add_option("-o,--output", options.output, help)->type_name("OUT");
   app.add_flag("--overwrite", options.overwrite, "Replace an existing output");
 }
 
-AnswerForm form_of(const AnswerOptions& options, bool json, bool has_plot) {
+AnswerForm form_of(const AnswerOptions& options, bool json, AnswerKinds kinds) {
   if (options.output.empty()) return AnswerForm::kStdout;
   if (options.output == "-") {
-    if (!json) return AnswerForm::kLayer;
+    if (!json) return kinds.layer ? AnswerForm::kLayer : AnswerForm::kStdout;
     throw Error(ErrorCode::invalid_argument,
                 "--json and -o - both write to stdout; give the answer a file name");
   }
@@ -30,13 +31,14 @@ AnswerForm form_of(const AnswerOptions& options, bool json, bool has_plot) {
   AnswerForm form = AnswerForm::kLayer;
   if (extension == ".csv") {
     form = AnswerForm::kCsv;
-  } else if (has_plot && is_picture_name(options.output)) {
+  } else if (kinds.plot && is_picture_name(options.output)) {
     form = AnswerForm::kPlot;
-  } else if (find_vector_format(options.output) == nullptr) {
+  } else if (!kinds.layer || find_vector_format(options.output) == nullptr) {
     throw Error(ErrorCode::invalid_argument,
-                "unknown format; end the name in .csv, " + known_vector_extensions() +
-                    (has_plot ? ", " + known_picture_extensions() : "") +
-                    ", or write - for GeoJSON on stdout",
+                "unknown format; end the name in .csv" +
+                    (kinds.layer ? ", " + known_vector_extensions() : "") +
+                    (kinds.plot ? ", " + known_picture_extensions() : "") + ", or write - for " +
+                    (kinds.layer ? "GeoJSON" : "CSV") + " on stdout",
                 options.output);
   }
   check_output(options.output, options.overwrite);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where locate, profile and sight put their answers: on stdout, in a table or in a layer.
+// Where locate, profile, sight and volume put their answers: on stdout, in a table, a layer or a plot.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,12 @@ struct AnswerOptions {
   std::string output;  ///< Empty: CSV on stdout.
   bool overwrite = false;
 };
-/// @param has_plot  The subcommand can write a plot too.
-void add_answer_options(CLI::App& app, AnswerOptions& options, bool has_plot = false);
+/// What a subcommand can write beside CSV.
+struct AnswerKinds {
+  bool layer = true;  ///< Then - is GeoJSON on stdout, else it is CSV there.
+  bool plot = false;
+};
+void add_answer_options(CLI::App& app, AnswerOptions& options, AnswerKinds kinds = {});
 
 enum class AnswerForm : std::uint8_t {
   kStdout,  ///< CSV on stdout.
@@ -28,10 +32,9 @@ enum class AnswerForm : std::uint8_t {
 };
 /// The form that is asked for. Called before the work, so that nobody waits for an answer that
 /// cannot be kept.
-/// @param has_plot  The subcommand can write a plot too.
 /// @throws Error as check_output(); invalid_argument  unknown extension; both the answer and --json
 ///                                                    would go to stdout
-[[nodiscard]] AnswerForm form_of(const AnswerOptions& options, bool json, bool has_plot = false);
+[[nodiscard]] AnswerForm form_of(const AnswerOptions& options, bool json, AnswerKinds kinds = {});
 
 /// Writes CSV where the form asks for it; nothing for other forms. With `json` stdout is taken.
 /// @throws Error as OutputFile, as write_to_stdout()

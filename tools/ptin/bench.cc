@@ -27,6 +27,7 @@ namespace {
 
 struct BenchOptions {
   IoRequest request;
+  Measures measures;
   int threads = 0;
   std::string memory;
   std::string output;
@@ -44,10 +45,12 @@ void check_plot(const BenchOptions& options) {
 }
 
 int run_bench(const BenchOptions& options, const Context& context) {
+  if (options.measures.wait()) {
+    options.measures.settle(crs_facts(*StoreFile::open(options.request.file)));
+  }
   IoRequest request = options.request;
   if (!(request.seconds > 0) || !std::isfinite(request.seconds))
     throw Error(ErrorCode::invalid_argument, "--seconds must be a finite number above 0");
-  check_detail({request.tolerance, {}});
   check_plot(options);
   install_sigbus_guard();
   request.most_threads = thread_count(options.threads);
@@ -90,9 +93,8 @@ Action declare_bench(CLI::App& app, Context& context) {
       ->type_name("N")
       ->check(counts())
       ->capture_default_str();
-  app.add_option("--error", request.tolerance,
-                 "Ask at a certified error, in the height's unit (default: exact)")
-      ->type_name("E");
+  add_error_option(app, options->measures, request.tolerance,
+                   "Ask at a certified error, in the height's unit, or as 50cm (default: exact)");
   app.add_option("--threads", options->threads,
                  "Most threads to ask at once (default: those that the process may use)")
       ->type_name("N")

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "tools/facts/numbers.h"
+#include "tools/ptin/measures.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -22,7 +23,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "This stored value (before scale and offset) means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points, TINs: the grid unit, in CRS units")
-      ->check(numbers(NumberRange::kPositive, "in CRS units"))
+      ->check(plain_measure(NumberRange::kPositive, "in CRS units"))
       ->type_name("R");
   app.add_option("--class", options.classes,
                  "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
@@ -57,7 +58,8 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "Points, --repair: triangles with an edge longer than this become void; CRS "
                  "units, or metres\n"
                  "where those are degrees")
-      ->check(numbers(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
+      ->check(
+          plain_measure(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
       ->type_name("L");
   app.add_option("--breaklines", options.breaklines,
                  "Points, --repair: lines with heights that become edges of the TIN, from layers "
@@ -167,7 +169,7 @@ void declare_build_options(CLI::App& app, BuildCommand& command) {
       ->check(CLI::IsMember({"error", "roi", "elevation"}));
   app.add_option("--max-error", options.max_error,
                  "Leave out detail below this error, in the height's unit")
-      ->check(numbers(NumberRange::kNotNegative, "in the height's unit"))
+      ->check(plain_measure(NumberRange::kNotNegative, "in the height's unit"))
       ->type_name("E");
   app.add_option(
          "--void-slope", options.void_slope,

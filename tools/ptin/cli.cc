@@ -136,12 +136,12 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin stream dem.ptin -o dem.ptins && ptin viewer -o site --stream dem.ptins\n"
      "  ptin viewer -o site && python3 -m http.server --directory site\n",
      declare_viewer},
-    {"highest", "Find the highest or lowest point of a window",
+    {"highest", "Find the highest or lowest point of a window or a polygon",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
      "Examples:\n"
      "  ptin highest dem.ptin\n"
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
-     "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 --lowest\n",
+     "  ptin highest dem.ptin --polygon park.gpkg --lowest\n",
      declare_highest},
     {"volume", "Measure cut and fill against a level, or between two terrains",
      "Cut is what lies above the level or above OTHER, fill what lies below, net is cut less fill. "
@@ -152,6 +152,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin volume dem.ptin --level 1000\n"
      "  ptin volume lake.ptin --interval 0.5 -o stages.csv\n"
+     "  ptin volume lake.ptin --level 410 411 412 413 -o stages.svg\n"
      "  ptin volume before.ptin --against after.ptin --polygon pit.gpkg\n"
      "  ptin volume lake.ptin --level 412.5 --window 385000 3790000 390000 3795000 --error 2 "
      "--json\n",

@@ -134,7 +134,6 @@ PixelContent content_of(const ExportOptions& options, const ExportFormat& format
 }
 
 void check_options(const ExportOptions& options, const ExportFormat& format) {
-  check_detail(options.detail);
   static_cast<void>(pixel_sides_of(options.pixel_size));
   const bool is_raster = format.make_sink == nullptr;
   if (!is_raster &&
@@ -353,7 +352,7 @@ Action declare_export(CLI::App& app, Context& context) {
   add_terrain_options(app, options->terrain, false);
   add_region_options(app, options->region);
   app.remove_option(app.get_option("--point"));
-  add_detail_options(app, options->detail, " (default: the full TIN)",
+  add_detail_options(app, options->terrain.measures, options->detail, " (default: the full TIN)",
                      "The TIN of the terrain's N most important vertices");
   app.add_option("-o,--output", options->output,
                  "The file to write; its extension chooses the format: " + known_extensions())
@@ -369,7 +368,7 @@ Action declare_export(CLI::App& app, Context& context) {
       ->expected(1, 2)
       ->type_name("SIZE");
   add_pixel_content_options(app, options->content);
-  add_model_options(app, options->model);
+  add_model_options(app, options->terrain.measures, options->model);
   app.add_option("--nodata", options->nodata,
                  "Rasters of heights: the value where there is no surface (default -9999)")
       ->type_name("V");

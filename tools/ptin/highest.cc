@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// ptin highest: the highest or the lowest point of a window.
+// ptin highest: the highest or the lowest point of a window or a polygon.
 #include <cstdio>
 #include <memory>
 
@@ -37,8 +37,10 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
     return exact_number(v.height) + " at " + exact_number(v.position.x) + " " +
            exact_number(v.position.y);
   };
+  const char* border =
+      options.region.polygon.empty() ? "on the window's border" : "on the polygon's border";
   std::printf("%s %s (%s)\n", options.lowest ? "lowest" : "highest", text(result.point).c_str(),
-              result.at_vertex ? "a vertex" : "on the window's border");
+              result.at_vertex ? "a vertex" : border);
   if (!result.exact) {
     std::printf("  the source's lies between %s and %s%s\n",
                 exact_number(result.height_min).c_str(), exact_number(result.height_max).c_str(),
@@ -48,14 +50,13 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 }
 
 int run_highest(const HighestOptions& options, const Context& context) {
-  check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
+  tell_transformed(asked.transformed, "the polygon", crs, context);
   HighestRequest request;
-  if (const auto region = region_of(options.region, terrain.store().facts(), crs).region) {
-    request.window = std::get<Window>(*region);
-  }
+  request.region = asked.region;
   request.lowest = options.lowest;
   request.listed = options.listed;
   request.detail = detail_of(options.detail);
@@ -74,6 +75,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
       {"certified_deviation", result.certified_deviation},
       {"border_moved_at_most", border_move_json(terrain.store(), result.certified_error)},
       {"exact", result.exact},
+      {"transformed", transformed_json(asked.transformed)},
       {"units", units_json(crs)},
       {"cost", cost_json(result.cost)}};
   if (result.state == PointState::kSurface) {
@@ -92,14 +94,14 @@ int run_highest(const HighestOptions& options, const Context& context) {
 Action declare_highest(CLI::App& app, Context& context) {
   const auto options = std::make_shared<HighestOptions>();
   add_terrain_options(app, options->terrain, false);
-  add_region_options(app, options->region, RegionKinds::kWindow);
+  add_region_options(app, options->region, RegionKinds::kWithInside);
   app.add_flag("--lowest", options->lowest, "The lowest point instead");
   app.add_option("-k", options->listed, "How many of the highest vertices to list")
       ->type_name("K")
       ->check(CLI::Range(1U, 1000000U))
       ->capture_default_str();
   add_detail_options(
-      app, options->detail, "; the height comes with an interval",
+      app, options->terrain.measures, options->detail, "; the height comes with an interval",
       "The highest of the TIN of the terrain's N most important vertices; its height "
       "comes with an interval");
   add_memory_option(app, options->memory);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <ogr_geometry.h>
 
@@ -42,12 +43,18 @@ struct IsolineOptions {
   bool overwrite = false;
 };
 
+/// The terrain, and what was done to the polygon.
+struct AskedTerrain {
+  const Terrain& terrain;
+  const CrsFacts& crs;
+  std::optional<Transformed> transformed;
+};
+
 void check_options(const IsolineOptions& options, const Context& context) {
   if (!options.levels.given()) {
     throw Error(ErrorCode::invalid_argument,
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
-  check_detail(options.detail);
   static_cast<void>(isoline_format_of(options.output));
   if (options.polygons) check_isoline_fields(options.output, "--polygons");
   if (options.output != "-") {
@@ -65,8 +72,9 @@ std::string folder_for_temporaries(const IsolineOptions& options) {
 }
 
 void report(const IsolineOptions& options, const Isolines& lines,
-            const IsolineLayer::Written& written, const StoreFile& store, const CrsFacts& crs,
+            const IsolineLayer::Written& written, const AskedTerrain& asked,
             const Context& context) {
+  const StoreFile& store = asked.terrain.store();
   if (context.json) {
     print_json({{"output", options.output},
                 {"levels", lines.levels()},
@@ -82,7 +90,8 @@ void report(const IsolineOptions& options, const Isolines& lines,
                 {"certified_deviation", lines.certified_deviation},
                 {"border_moved_at_most", border_move_json(store, lines.certified_error)},
                 {"exact", lines.exact},
-                {"units", units_json(crs)},
+                {"transformed", transformed_json(asked.transformed)},
+                {"units", units_json(asked.crs)},
                 {"cost", cost_json(lines.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.output.c_str(),
@@ -93,18 +102,18 @@ void report(const IsolineOptions& options, const Isolines& lines,
   }
 }
 
-int run_lines(const IsolineOptions& options, const IsolineRequest& request, const Terrain& terrain,
-              const CrsFacts& crs, const Context& context) {
-  const Isolines lines = terrain.isolines(request);
+int run_lines(const IsolineOptions& options, const IsolineRequest& request,
+              const AskedTerrain& asked, const Context& context) {
+  const Isolines lines = asked.terrain.isolines(request);
   const IndexLevels index{options.levels.interval.value_or(0.0), options.levels.base};
   IsolineLayer layer(
-      {options.output, options.overwrite, options.z, false, crs, index, context.stop});
+      {options.output, options.overwrite, options.z, false, asked.crs, index, context.stop});
   const IsolineLayer::Written written = layer.add(lines);
   layer.publish();
   if (written.lines == 0 && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: no surface crosses these levels; the layer is empty\n");
   }
-  report(options, lines, written, terrain.store(), crs, context);
+  report(options, lines, written, asked, context);
   return kExitDone;
 }
 
@@ -127,14 +136,14 @@ RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& level
   if (has_straight_border(terrain.store()) && !request.detail.vertices) {
     const PredicatePtr crossing = levels.crossing();
     RefineRequest refine;
-    if (request.window) refine.region = *request.window;
+    refine.region = request.region;
     refine.detail = request.detail;
     refine.also = crossing.get();
     refine.limits = limits;
     return terrain.refine(refine);
   }
   PartRequest part;
-  if (request.window) part.region = *request.window;
+  part.region = request.region;
   part.detail = request.detail;
   part.limits = limits;
   TinParts parts = terrain.parts(part);
@@ -199,11 +208,12 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
 }
 
 int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
-                 const Terrain& terrain, const CrsFacts& crs, const Context& context) {
+                 const AskedTerrain& asked, const Context& context) {
+  const Terrain& terrain = asked.terrain;
   const StoreFacts& facts = terrain.store().facts();
   const LevelSet levels(request.levels, facts.heights);
   RefinedTin refined = refine_for_bands(request, levels, terrain);
-  const Mesh mesh = request.window ? cut_to_region(refined, facts, *request.window)
+  const Mesh mesh = request.region ? cut_to_region(refined, facts, *request.region)
                                    : surface_mesh(refined, facts);
   refined.tin = {};
   std::vector<double> heights;  // Decoded as those of vertices are.
@@ -221,7 +231,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                     ": ask for fewer levels or a larger error, or raise --max-lines",
                 options.terrain.file);
   }
-  const std::uint64_t features = write_bands(polygons, levels, facts, options, crs.wkt);
+  const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs.wkt);
   if (context.json) {
     print_json(
         {{"output", options.output},
@@ -232,7 +242,8 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
          {"certified_deviation", refined.certified_deviation},
          {"border_moved_at_most", border_move_json(terrain.store(), refined.certified_error)},
          {"exact", refined.exact},
-         {"units", units_json(crs)},
+         {"transformed", transformed_json(asked.transformed)},
+         {"units", units_json(asked.crs)},
          {"cost", cost_json(refined.cost)}});
   } else if (!context.quiet && options.output != "-") {
     std::printf("%s: %s of %s\n", options.output.c_str(), counted(features, "band").c_str(),
@@ -248,9 +259,9 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request;
   request.levels = levels_of(options.levels, terrain.store().facts());
-  if (const auto region = region_of(options.region, terrain.store().facts(), crs).region) {
-    request.window = std::get<Window>(*region);
-  }
+  const AskedRegion region = region_of(options.region, terrain.store().facts(), crs);
+  tell_transformed(region.transformed, "the polygon", crs, context);
+  request.region = region.region;
   request.detail = detail_of(options.detail);
   request.most_lines = options.max_lines;
   request.limits.memory_bytes = memory_limit_of(options.memory, request.limits.memory_bytes);
@@ -259,8 +270,9 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.limits.stop = context.stop;
   request.by = options.by;
   request.counts_vertices = context.json;
-  return options.polygons ? run_polygons(options, request, terrain, crs, context)
-                          : run_lines(options, request, terrain, crs, context);
+  const AskedTerrain asked{terrain, crs, region.transformed};
+  return options.polygons ? run_polygons(options, request, asked, context)
+                          : run_lines(options, request, asked, context);
 }
 
 }  // namespace
@@ -271,10 +283,10 @@ Action declare_isoline(CLI::App& app, Context& context) {
   app.get_option("--tmp")->description(
       "Folder for temporary files: lines that do not fit in --memory (default: OUT's folder), "
       "--index spatialindex (default: beside FILE)");
-  add_level_options(app, options->levels, "Heights, in the height's unit",
-                    "Every multiple of D, from the base");
-  add_region_options(app, options->region, RegionKinds::kWindow);
-  add_detail_options(app, options->detail, "",
+  add_level_options(app, options->terrain.measures, options->levels,
+                    "Heights, in the height's unit", "Every multiple of D, from the base");
+  add_region_options(app, options->region, RegionKinds::kWithInside);
+  add_detail_options(app, options->terrain.measures, options->detail, "",
                      "The isolines of the TIN of the terrain's N most important vertices");
   auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");
   app.add_flag("-p,--polygons", options->polygons,

@@ -118,7 +118,6 @@ int run_locate(const LocateOptions& options, const Context& context) {
   if (options.point.empty() == options.points.empty()) {
     throw Error(ErrorCode::invalid_argument, "give either X Y or --points FILE");
   }
-  check_detail(options.detail);
   const AnswerForm form = form_of(options.answer, context.json);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
@@ -157,7 +156,8 @@ Action declare_locate(CLI::App& app, Context& context) {
       "reads standard input), or a vector file (transformed to the terrain's CRS)");
   points->type_name("FILE");
   add_input_options(app, options->choice, points, "x, y");
-  add_detail_options(app, options->detail, "; heights come with intervals",
+  add_detail_options(app, options->terrain.measures, options->detail,
+                     "; heights come with intervals",
                      "Ask the TIN of the terrain's N most important vertices; heights come with "
                      "intervals");
   add_by_option(app, options->by);

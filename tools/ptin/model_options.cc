@@ -25,11 +25,10 @@ double reduction_of(const ModelOptions& options) {
 
 }  // namespace
 
-void add_model_options(CLI::App& app, ModelOptions& options) {
-  app.add_option(
-         "--solid", options.base,
-         ".stl, .glb: a closed solid to print, with walls down to a flat base at this height")
-      ->check(numbers(NumberRange::kFinite, "in the height's unit"))
+void add_model_options(CLI::App& app, Measures& measures, ModelOptions& options) {
+  measures
+      .add(app, "--solid", options.base, MeasureKind::kHeight, NumberRange::kFinite,
+           ".stl, .glb: a closed solid to print, with walls down to a flat base at this height")
       ->type_name("BASE");
   app.add_option("--scale", options.scale,
                  ".stl, .glb: a model at this scale, as 1:25000; an STL is in millimetres then")

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/formats/mesh.h"
+#include "tools/ptin/measures.h"
 
 namespace ptin::tools {
 
@@ -18,7 +19,7 @@ struct ModelOptions {
   double exaggeration = 1.0;   ///< A factor on heights.
 };
 
-void add_model_options(CLI::App& app, ModelOptions& options);
+void add_model_options(CLI::App& app, Measures& measures, ModelOptions& options);
 /// @throws Error invalid_argument  they mean nothing, or nothing for this format
 void check_model(const ModelOptions& options, const std::string& output);
 /// Metres of the frame's coordinates become millimetres of the model in an STL, whose programs take

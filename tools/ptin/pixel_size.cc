@@ -15,11 +15,13 @@ namespace {
 constexpr const char* kPixelSize = "--pixel-size";
 
 Length pixel_side_of(const std::string& text) {
-  if (const std::optional<Length> length = length_of(text)) return *length;
+  if (const std::optional<Length> length = length_of(text); length && length->number > 0) {
+    return *length;
+  }
   throw Error(ErrorCode::invalid_argument,
               "\"" + text +
-                  "\" is no size of a pixel; expected a number > 0 in map units, or with m, km or "
-                  "ft behind it a length over ground, as 90m",
+                  "\" is no size of a pixel; expected a number > 0 in map units, or with a unit (" +
+                  known_length_units() + ") behind it a length over ground, as 90m",
               kPixelSize);
 }
 
@@ -35,7 +37,7 @@ std::array<double, 2> pixel_size_of(const std::vector<Length>& sides, const CrsF
                                     MapPoint at) {
   const Length& across = sides.front();
   const Length& up = sides.back();
-  if (!across.is_on_ground && !up.is_on_ground) return {across.number, up.number};
+  if (!across.has_unit() && !up.has_unit()) return {across.number, up.number};
   const std::optional<MapPoint> metres = metres_per_map_unit(crs, at);
   if (!metres) {
     throw Error(ErrorCode::invalid_argument,
@@ -43,8 +45,8 @@ std::array<double, 2> pixel_size_of(const std::vector<Length>& sides, const CrsF
                 "turned into it; give a number in map units",
                 kPixelSize);
   }
-  return {across.is_on_ground ? across.number / metres->x : across.number,
-          up.is_on_ground ? up.number / metres->y : up.number};
+  return {across.has_unit() ? across.in(metres->x) : across.number,
+          up.has_unit() ? up.in(metres->y) : up.number};
 }
 
 MapPoint middle_of(const std::optional<Window>& window, const StoreFacts& facts) {

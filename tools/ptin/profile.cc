@@ -20,7 +20,6 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/quantity.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
 #include "tools/formats/vector_file.h"
@@ -36,7 +35,7 @@ namespace {
 struct ProfileOptions {
   TerrainOptions terrain;
   std::string line;
-  std::optional<std::string> stations;
+  std::optional<double> stations;
   bool stations_only = false;
   InputChoice choice;
   DetailOptions detail;
@@ -47,30 +46,6 @@ struct ProfileOptions {
 /// The unit of distances along the lines.
 std::string unit_of_lengths(const CrsFacts& crs) {
   return crs.geographic ? "metre" : crs.horizontal_unit;
-}
-
-/// The distance between stations that --stations asks for, in the unit of distances along lines; 0
-/// where there are none.
-/// @throws Error invalid_argument  no length, or one over ground where the map unit is unknown
-double station_step_of(const std::optional<std::string>& text, const CrsFacts& crs) {
-  constexpr const char* kStations = "--stations";
-  if (!text) return 0.0;
-  const std::optional<Length> step = length_of(*text);
-  if (!step) {
-    refuse("\"" + *text + "\" is no distance between stations; expected a number > 0 in " +
-               (crs.geographic ? "metres" : "map units") +
-               ", or with m, km or ft behind it, as 50m",
-           kStations);
-  }
-  if (!step->is_on_ground || crs.geographic) return step->number;
-  const std::optional<MapPoint> metres = metres_per_map_unit(crs, {});  // of a plane
-  if (!metres) {
-    refuse(
-        "the unit of the terrain's map is unknown, so a length in m, km or ft cannot be turned "
-        "into it; give a number in map units",
-        kStations);
-  }
-  return step->number / metres->x;
 }
 
 /// The length of all lines together.
@@ -183,7 +158,7 @@ PlotUnits plot_units_of(const CrsFacts& crs) {
 void write_profile(const ProfileOptions& options, bool json, const ProfileResult& profile,
                    const std::vector<std::string>& ids, const CrsFacts& crs) {
   const AnswerOptions& answer = options.answer;
-  const AnswerForm form = form_of(answer, json, true);
+  const AnswerForm form = form_of(answer, json, {.plot = true});
   if (form == AnswerForm::kLayer && options.stations_only) {
     write_stations(answer, profile, ids, crs);
   } else if (form == AnswerForm::kLayer) {
@@ -228,12 +203,12 @@ nlohmann::json answer_of(const ProfileOptions& options, const ProfileResult& res
 }
 
 int run_profile(const ProfileOptions& options, const Context& context) {
-  if (const AnswerForm form = form_of(options.answer, context.json, true);  // before the work
+  if (const AnswerForm form =
+          form_of(options.answer, context.json, {.plot = true});  // before the work
       form == AnswerForm::kPlot && options.stations_only) {
     refuse("a plot draws the ground between stations too; leave --stations-only out",
            options.answer.output);
   }
-  check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   const CrsFacts crs = crs_facts(terrain.store());
@@ -244,7 +219,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   ProfileRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
-  request.station_step = station_step_of(options.stations, crs);
+  request.station_step = options.stations.value_or(0.0);
   if (const Ground ground = ground_of(crs); ground.geographic) {  // Degrees are no lengths.
     request.ground_distance = [ground](MapPoint a, MapPoint b) {
       return ground.distance(a, b) * ground.metres_per_height;
@@ -282,18 +257,19 @@ Action declare_profile(CLI::App& app, Context& context) {
                      "file (transformed to the terrain's CRS)");
   line->type_name("WKT_OR_FILE")->required();
   add_input_options(app, options->choice, line, "");
-  auto* stations = app.add_option("--stations", options->stations,
-                                  "Beside the breaks, heights at equal distances: map units (in "
-                                  "degrees metres), or 50m, 0.1km, "
-                                  "200ft");
-  stations->type_name("D");
+  auto* stations =
+      options->terrain.measures
+          .add(app, "--stations", options->stations, MeasureKind::kGround, NumberRange::kPositive,
+               "Beside the breaks, heights at equal distances: map units (in degrees "
+               "metres), or 50m, 0.1km, 200ft")
+          ->type_name("D");
   app.add_flag("--stations-only", options->stations_only,
                "The stations alone: rows of CSV, or points of a layer")
       ->needs(stations);
-  add_detail_options(app, options->detail, "",
+  add_detail_options(app, options->terrain.measures, options->detail, "",
                      "Ask the TIN of the terrain's N most important vertices");
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer, true);
+  add_answer_options(app, options->answer, {.plot = true});
   return [options, &context] { return run_profile(*options, context); };
 }
 

@@ -44,6 +44,16 @@ void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index)
       ->type_name("DIR");
 }
 
+namespace {
+
+std::shared_ptr<const StoreFile> settled(std::shared_ptr<const StoreFile> store,
+                                         const Measures& measures) {
+  if (measures.wait()) measures.settle(crs_facts(*store));
+  return store;
+}
+
+}  // namespace
+
 std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const Context& context) {
   if (is_remote(options.file)) {
     RemoteOptions remote;
@@ -52,10 +62,12 @@ std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const
       remote.caches.memory_bytes = parse_memory(options.remote_cache, "--remote-cache");
     }
     remote.stop = context.stop;
-    return open_remote_store(options.file, remote);
+    return settled(open_remote_store(options.file, remote), options.measures);
   }
   if (!options.no_mmap) install_sigbus_guard();
-  return StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped);
+  return settled(
+      StoreFile::open(options.file, options.no_mmap ? PageAccess::kPread : PageAccess::kMapped),
+      options.measures);
 }
 
 Terrain open_terrain(const TerrainOptions& options, const Context& context) {
@@ -193,21 +205,21 @@ void add_curvature_option(CLI::App& app, double& coefficient) {
       ->excludes(curvature);
 }
 
-void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
-                        const std::string& vertices_help) {
-  auto* error = app.add_option("--error", options.error,
-                               "Certified error allowed, in the height's unit" + error_help)
-                    ->type_name("E");
+CLI::Option* add_error_option(CLI::App& app, Measures& measures, std::optional<double>& error,
+                              const std::string& help) {
+  return measures.add(app, "--error", error, MeasureKind::kHeight, NumberRange::kTolerance, help)
+      ->type_name("E");
+}
+
+void add_detail_options(CLI::App& app, Measures& measures, DetailOptions& options,
+                        const std::string& error_help, const std::string& vertices_help) {
+  auto* error =
+      add_error_option(app, measures, options.error,
+                       "Certified error allowed, in the height's unit, or as 50cm" + error_help);
   app.add_option("--vertices", options.vertices, vertices_help)
       ->type_name("N")
       ->check(counts())
       ->excludes(error);
-}
-
-void check_detail(const DetailOptions& options) {
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
 }
 
 void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
@@ -228,17 +240,20 @@ void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
                store.path().c_str(), short_number(base).c_str(), short_number(*error).c_str());
 }
 
-void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
-                       const std::string& interval_help) {
-  auto* level = app.add_option("--level,--fl", options.levels, level_help)
-                    ->check(numbers(NumberRange::kFinite, "in the height's unit"))
-                    ->type_name("H...");
-  auto* interval = app.add_option("-i,--interval", options.interval, interval_help)
-                       ->check(numbers(NumberRange::kPositive, "in the height's unit"))
+void add_level_options(CLI::App& app, Measures& measures, LevelOptions& options,
+                       const std::string& level_help, const std::string& interval_help) {
+  constexpr MeasureKind kHeight = MeasureKind::kHeight;
+  auto* level =
+      measures.add(app, "--level,--fl", options.levels, kHeight, NumberRange::kFinite, level_help)
+          ->type_name("H...");
+  auto* interval = measures
+                       .add(app, "-i,--interval", options.interval, kHeight, NumberRange::kPositive,
+                            interval_help)
                        ->type_name("D")
                        ->excludes(level);
-  app.add_option("--base,--off", options.base, "Where the intervals are counted from (default 0)")
-      ->check(numbers(NumberRange::kFinite, "in the height's unit"))
+  measures
+      .add(app, "--base,--off", options.base, kHeight, NumberRange::kFinite,
+           "Where the intervals are counted from (default 0)")
       ->type_name("B")
       ->needs(interval);
 }

@@ -16,12 +16,13 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "tools/ptin/command.h"
+#include "tools/ptin/measures.h"
 #include "tools/region/on_terrain.h"
 #include "tools/region/straight_sides.h"
 
 namespace ptin::tools {
 
-/// FILE, which may lie elsewhere, how it is read, --index and --tmp.
+/// FILE, which may lie elsewhere, how it is read, --index and --tmp; and what waits for its units.
 struct TerrainOptions {
   std::string file;
   std::string remote_cache;  ///< Text for parse_memory; empty: the default.
@@ -29,9 +30,11 @@ struct TerrainOptions {
   std::string index = "packed";
   std::string temporary_folder;
   bool no_mmap = false;
+  Measures measures;  ///< Of all options of the subcommand.
 };
 void add_terrain_options(CLI::App& app, TerrainOptions& options, bool has_index);
-/// @throws Error as Terrain::open and open_remote_store
+/// Opens the terrain, and settles the measures.
+/// @throws Error as Terrain::open, open_remote_store and Measures::settle
 [[nodiscard]] Terrain open_terrain(const TerrainOptions& options, const Context& context);
 /// The same without T0 as a mesh.
 [[nodiscard]] std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options,
@@ -80,13 +83,15 @@ struct DetailOptions {
   std::optional<double> error;
   std::optional<std::uint64_t> vertices;
 };
+/// @param measures       That wait for the terrain.
 /// @param error_help     What --error means for this subcommand; appended to the words that hold
 ///                       for all.
 /// @param vertices_help  What --vertices means for this subcommand.
-void add_detail_options(CLI::App& app, DetailOptions& options, const std::string& error_help,
-                        const std::string& vertices_help);
-/// @throws Error invalid_argument  --error negative or not a number
-void check_detail(const DetailOptions& options);
+void add_detail_options(CLI::App& app, Measures& measures, DetailOptions& options,
+                        const std::string& error_help, const std::string& vertices_help);
+/// Declares --error alone.
+CLI::Option* add_error_option(CLI::App& app, Measures& measures, std::optional<double>& error,
+                              const std::string& help);
 /// Writes a warning to stderr where a terrain has no surface, so that every answer is void, and where
 /// the file keeps less detail than --error asks for (`build --max-error`): the answer then certifies
 /// what the file keeps. Silent with -q and --json.
@@ -102,9 +107,10 @@ struct LevelOptions {
 
   [[nodiscard]] bool given() const { return !levels.empty() || interval; }
 };
+/// @param measures                   That wait for the terrain.
 /// @param level_help, interval_help  What each asks for here.
-void add_level_options(CLI::App& app, LevelOptions& options, const std::string& level_help,
-                       const std::string& interval_help);
+void add_level_options(CLI::App& app, Measures& measures, LevelOptions& options,
+                       const std::string& level_help, const std::string& interval_help);
 /// The heights that were given, or the multiples of the interval, counted from the base, that lie
 /// within the heights of the terrain; the next one above where none does.
 /// @throws Error as levels_at()

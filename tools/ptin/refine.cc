@@ -46,7 +46,6 @@ void check_options(const RefineOptions& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--cut needs an area; a point has none (--clip keeps its triangle)");
   }
-  check_detail(options.detail);
   static_cast<void>(mesh_format_of(options.output));
   check_model(options.model, options.output);
   check_output(options.output, options.overwrite);
@@ -186,7 +185,7 @@ Action declare_refine(CLI::App& app, Context& context) {
   add_terrain_options(app, options->terrain, true);
   add_region_options(app, options->region);
   add_detail_options(
-      app, options->detail, "",
+      app, options->terrain.measures, options->detail, "",
       "A mesh of exactly this many vertices, the most important ones of the region; not written\n"
       "are those in void triangles alone, and what --clip and --cut leave out");
   app.add_option("--triangles", options->triangles,
@@ -208,7 +207,7 @@ Action declare_refine(CLI::App& app, Context& context) {
                  "The mesh to write; its extension chooses the format: " + formats)
       ->type_name("OUT")
       ->required();
-  add_model_options(app, options->model);
+  add_model_options(app, options->terrain.measures, options->model);
   app.add_flag("--stats", options->stats, "Print what is certified and what it cost, too");
   add_memory_option(app, options->memory);
   app.add_flag("--overwrite", options->overwrite, "Replace an existing output");

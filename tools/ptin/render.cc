@@ -40,9 +40,6 @@ void check_options(const RenderOptions& options) {
     throw Error(ErrorCode::invalid_argument,
                 "unknown extension; known are " + known_picture_extensions(), path);
   }
-  if (options.error && !(*options.error >= 0)) {
-    throw Error(ErrorCode::invalid_argument, "--error must be a number >= 0, in the height's unit");
-  }
   check_output(path, options.overwrite);
 }
 
@@ -201,10 +198,9 @@ Action declare_render(CLI::App& app, Context& context) {
   const auto options = std::make_shared<RenderOptions>();
   add_terrain_options(app, options->terrain, false);
   add_region_options(app, options->region, RegionKinds::kWindow);
-  app.add_option(
-         "--error", options->error,
-         "Certified error allowed, in the height's unit (default: as fine as the pixels can show)")
-      ->type_name("E");
+  add_error_option(app, options->terrain.measures, options->error,
+                   "Certified error allowed, in the height's unit, or as 50cm (default: as fine as "
+                   "the pixels can show)");
   app.add_option("--size", options->size, "Pixels (default: the longer side has 1200)")
       ->expected(2)
       ->type_name("W H");

@@ -197,7 +197,7 @@ class SightAnswers {
       : options_(options),
         asked_(asked),
         is_json_(context.json),
-        form_(form_of(options.answer, context.json, true)) {
+        form_(form_of(options.answer, context.json, {.plot = true})) {
     csv_ = "verdict";
     for (const char* name : kNumbers) csv_.append(",").append(name);
     csv_ += asked.ids.empty() ? "\n" : ",id\n";
@@ -271,8 +271,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   if (options.pair.empty() == options.pairs.empty()) {
     throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
   }
-  check_detail(options.detail);
-  std::ignore = form_of(options.answer, context.json, true);  // before the work
+  std::ignore = form_of(options.answer, context.json, {.plot = true});  // before the work
   if (options.frequency) std::ignore = hertz_of(*options.frequency);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
@@ -332,7 +331,8 @@ Action declare_sight(CLI::App& app, Context& context) {
                  "(hertz); 1 MHz at least")
       ->excludes(verdict)
       ->type_name("F");
-  add_detail_options(app, options->detail, ": finer records are left out; may answer undecided",
+  add_detail_options(app, options->terrain.measures, options->detail,
+                     ": finer records are left out; may answer undecided",
                      "Leave out what is not among the terrain's N most important vertices; may "
                      "answer undecided");
   app.add_option(
@@ -342,7 +342,7 @@ Action declare_sight(CLI::App& app, Context& context) {
       ->check(counts());
   add_by_option(app, options->by);
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer, true);
+  add_answer_options(app, options->answer, {.plot = true});
   return [options, &context] { return run_sight(*options, context); };
 }
 

@@ -123,19 +123,20 @@ int run_stream(const StreamOptions& options, const Context& context) {
 }
 
 /// Declares --window, --error, --level and --splits with a common prefix.
-void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
+void add_serving(CLI::App& app, Measures& measures, Serving& serving, const std::string& prefix,
                  const std::string& what) {
   app.add_option("--" + prefix + "window", serving.window, what + " window, in map units")
       ->expected(4)
       ->type_name("XMIN YMIN XMAX YMAX");
-  app.add_option("--" + prefix + "error", serving.error,
-                 what + " certified error, in the height's unit")
-      ->check(numbers(NumberRange::kTolerance, "in the height's unit"))
+  constexpr MeasureKind kHeight = MeasureKind::kHeight;
+  measures
+      .add(app, "--" + prefix + "error", serving.error, kHeight, NumberRange::kTolerance,
+           what + " certified error, in the height's unit, or as 50cm")
       ->type_name("E");
-  app.add_option("--" + prefix + "level", serving.levels,
-                 what + " heights: only what isolines at them need")
+  measures
+      .add(app, "--" + prefix + "level", serving.levels, kHeight, NumberRange::kFinite,
+           what + " heights: only what isolines at them need")
       ->expected(1, 1000)
-      ->check(numbers(NumberRange::kFinite, "in the height's unit"))
       ->type_name("H...");
   app.add_option("--" + prefix + "splits", serving.splits,
                  what + " number of splits: only the first so many, the most important ones")
@@ -148,8 +149,9 @@ void add_serving(CLI::App& app, Serving& serving, const std::string& prefix,
 Action declare_stream(CLI::App& app, Context& context) {
   const auto options = std::make_shared<StreamOptions>();
   add_terrain_options(app, options->terrain, false);
-  add_serving(app, options->wanted, "", "What to send:");
-  add_serving(app, options->had, "have-", "What the receiver was served before:");
+  add_serving(app, options->terrain.measures, options->wanted, "", "What to send:");
+  add_serving(app, options->terrain.measures, options->had, "have-",
+              "What the receiver was served before:");
   app.add_option("--have", options->have,
                  "What the receiver was served before, as `ptin unstream --json` prints it")
       ->type_name("JSON");

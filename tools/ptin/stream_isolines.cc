@@ -10,7 +10,8 @@
 namespace ptin::tools {
 
 void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
-  add_level_options(app, options.levels, "Write isolines at these heights instead of the mesh",
+  add_level_options(app, options.measures, options.levels,
+                    "Write isolines at these heights instead of the mesh",
                     "The same at every multiple of D, from the base");
   app.add_option("--window", options.window, "Cut the isolines at a window, in map units")
       ->expected(4)
@@ -62,12 +63,13 @@ void StreamIsolines::begin(const StreamReader& reader) {
   if (window_) {
     check_on_terrain(*window_, facts, "--window");
   }
+  const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
+  const CrsFacts crs = metadata.is_object() ? crs_facts_of(metadata) : CrsFacts{};
+  options_.measures.settle(crs);
   const std::vector<double> levels = levels_of(options_.levels, facts);
   isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
                     context_);
   if (!output_.empty()) {
-    const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
-    const CrsFacts crs = metadata.is_object() ? crs_facts_of(metadata) : CrsFacts{};
     const IndexLevels index{options_.levels.interval.value_or(0.0), options_.levels.base};
     layer_ = std::make_unique<IsolineLayer>(
         IsolineLayer::Options{output_, overwrite_, options_.z, options_.steps, crs, index, stop_});

@@ -20,6 +20,8 @@ namespace ptin::tools {
 
 /// --level, --interval, --base, --window, --3d, --steps.
 struct StreamIsolineOptions {
+  Measures
+      measures;  ///< Of all options of the subcommand; settled when the stream tells its units.
   LevelOptions levels;
   std::vector<double> window;
   bool z = false;
@@ -33,6 +35,7 @@ void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
 /// with --steps after T0 and after every frame of splits.
 class StreamIsolines {
  public:
+  /// @param options  Outlive this; their levels become heights in the stream's unit.
   /// @param output  The layer; empty writes none.
   /// @param limits  Memory for the isolines that are kept and for writing them; the stop token.
   StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
@@ -49,7 +52,7 @@ class StreamIsolines {
   void begin(const StreamReader& reader);
   void write(const StreamReader& reader);
 
-  StreamIsolineOptions options_;
+  const StreamIsolineOptions& options_;
   std::string output_;
   bool overwrite_;
   std::stop_token stop_;

@@ -275,11 +275,11 @@ Action declare_verify(CLI::App& app, Context& context) {
   app.add_option("--boundary", command->lines.boundary, "The file of the boundary of the build")
       ->needs(against)
       ->type_name("FILE");
-  app.add_option("--tolerance", command->tolerances,
-                 "Tolerances to check against the source (default: 0 and four more)")
+  command->terrain.measures
+      .add(app, "--tolerance", command->tolerances, MeasureKind::kHeight, NumberRange::kNotNegative,
+           "Tolerances to check against the source (default: 0 and four more)")
       ->needs(against)
-      ->check(numbers(NumberRange::kNotNegative, "in the height's unit"))
-      ->type_name("E");
+      ->type_name("E...");
   app.add_option("--memory", command->memory,
                  "Memory to check the splits in, and to sort the points of the source in, as "
                  "512M or 2G (default 1G)")

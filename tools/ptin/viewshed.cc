@@ -85,7 +85,6 @@ std::optional<std::array<double, 2>> pixel_size_of(const ViewshedOptions& option
 }
 
 void check_options(const ViewshedOptions& options) {
-  check_detail(options.detail);
   if (options.output == "-") {
     throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
                                                  known_vector_extensions() + " for vertices");
@@ -258,22 +257,24 @@ Action declare_viewshed(CLI::App& app, Context& context) {
   const auto options = std::make_shared<ViewshedOptions>();
   add_terrain_options(app, options->terrain, true);
   const CLI::Validator position = numbers(NumberRange::kFinite, "in map units");
-  const CLI::Validator height = numbers(NumberRange::kFinite, "in the height's unit");
+  Measures& measures = options->terrain.measures;
   app.add_option("X", options->x, "The observer's position, in map units")
       ->required()
       ->check(position);
   app.add_option("Y", options->y, "")->required()->check(position);
-  app.add_option("H", options->height, "The observer's height above the surface")
-      ->required()
-      ->check(height);
-  app.add_option("--radius", options->radius,
-                 "How far to look: map units; metres in a geographic CRS")
-      ->check(numbers(NumberRange::kPositive, "in map units, or metres in a geographic CRS"))
+  measures
+      .add(app, "H", options->height, MeasureKind::kHeight, NumberRange::kFinite,
+           "The observer's height above the surface")
+      ->required();
+  measures
+      .add(app, "--radius", options->radius, MeasureKind::kGround, NumberRange::kPositive,
+           "How far to look: map units (metres in a geographic CRS), or 5km, 3mi")
       ->type_name("R")
       ->required();
   app.add_flag("--absolute", options->absolute, "H is a height of itself, not above the surface");
-  app.add_option("--target-height", options->target_height, "Height of targets above the surface")
-      ->check(height)
+  measures
+      .add(app, "--target-height", options->target_height, MeasureKind::kHeight,
+           NumberRange::kFinite, "Height of targets above the surface")
       ->type_name("T");
   add_curvature_option(app, options->curvature);
   app.add_option(
@@ -282,7 +283,7 @@ Action declare_viewshed(CLI::App& app, Context& context) {
          "the observer (default: that of the raster it was built from)")
       ->type_name("S");
   add_detail_options(
-      app, options->detail,
+      app, options->terrain.measures, options->detail,
       " at the radius, less towards the observer; where the full TIN may answer otherwise, a "
       "target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
       "Of the TIN of the terrain's N most important vertices, and more towards the "

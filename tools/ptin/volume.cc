@@ -19,6 +19,7 @@
 #include "tools/facts/human.h"
 #include "tools/formats/csv_text.h"
 #include "tools/formats/number_text.h"
+#include "tools/plot/volume_plot.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/query_options.h"
 #include "tools/ptin/source_counts.h"
@@ -27,6 +28,8 @@
 namespace ptin::tools {
 
 namespace {
+
+constexpr AnswerKinds kAnswerKinds{.layer = false, .plot = true};
 
 struct VolumeOptions {
   TerrainOptions terrain;
@@ -200,27 +203,33 @@ void print_text(const VolumeResult& result, const VolumeOptions& options, const 
   const std::string than = options.against.empty() ? "the level" : options.against;
   const std::string& here = options.terrain.file;
   const auto volume = [&](const char* name, const CertifiedVolume& v, const std::string& where) {
-    std::printf("%-5s %s cubic %s", name, grouped_number(v.value).c_str(), known.c_str());
+    const double off = std::max({result.rounding, v.high - v.value, v.value - v.low});
+    std::printf("%-5s %s cubic %s", name, grouped_number(v.value, off).c_str(), known.c_str());
     if (!result.exact) {
-      std::printf(", the source's between %s and %s", grouped_number(v.low).c_str(),
-                  grouped_number(v.high).c_str());
+      std::printf(", the source's between %s and %s", grouped_number(v.low, off).c_str(),
+                  grouped_number(v.high, off).c_str());
     }
     std::printf("%s\n", where.c_str());
   };
   volume("cut", result.cut, ": " + here + " is above " + than + ", material to take away");
   volume("fill", result.fill, ": " + here + " is below " + than + ", material to bring");
   volume("net", result.net, ": cut less fill");
-  std::printf("area  %s square %s: cut %s, fill %s; void %s\n",
-              grouped_number(result.surface_area).c_str(), known.c_str(),
-              grouped_number(result.cut_area).c_str(), grouped_number(result.fill_area).c_str(),
-              grouped_number(result.void_area).c_str());
+  const double off = 1e-9 * (result.surface_area + result.void_area);  // beyond what rounding does
+  const auto area = [off](double value) { return grouped_number(value, off); };
+  std::printf("area  %s square %s: cut %s, fill %s; void %s\n", area(result.surface_area).c_str(),
+              known.c_str(), area(result.cut_area).c_str(), area(result.fill_area).c_str(),
+              area(result.void_area).c_str());
   if (!options.against.empty()) {
     std::printf("      surface in %s alone %s, in %s alone %s\n", options.terrain.file.c_str(),
-                grouped_number(result.only_here_area).c_str(), options.against.c_str(),
-                grouped_number(result.only_other_area).c_str());
+                area(result.only_here_area).c_str(), options.against.c_str(),
+                area(result.only_other_area).c_str());
   }
   if (std::isfinite(result.mean_difference)) {
-    std::printf("mean  %s %s\n", grouped_number(result.mean_difference).c_str(), known.c_str());
+    const double of_net = std::max({2 * result.rounding, result.net.high - result.net.value,
+                                    result.net.value - result.net.low});
+    std::printf("mean  %s %s\n",
+                grouped_number(result.mean_difference, of_net / result.surface_area).c_str(),
+                known.c_str());
   }
 }
 
@@ -230,13 +239,11 @@ int run_volume(const VolumeOptions& options, const Context& context) {
                 "a volume is measured against --level H..., --interval D or --against OTHER; give "
                 "one of them");
   }
-  const AnswerForm form = form_of(options.answer, context.json);
-  if (form == AnswerForm::kLayer) refuse("volumes are a table; write .csv", options.answer.output);
-  if (form == AnswerForm::kCsv && !options.against.empty()) {
-    refuse("a table has a row for each level, and another terrain has none; leave -o out",
+  const AnswerForm form = form_of(options.answer, context.json, kAnswerKinds);
+  if (!options.answer.output.empty() && !options.against.empty()) {
+    refuse("a table or a plot is of levels, and another terrain has none; leave -o out",
            options.answer.output);
   }
-  check_detail(options.detail);
   const Terrain terrain = open_terrain(options.terrain, context);
   warn_of_terrain(terrain.store(), options.detail.error, context);
   CrsFacts crs = crs_facts(terrain.store());
@@ -267,8 +274,13 @@ int run_volume(const VolumeOptions& options, const Context& context) {
              ": all volumes are 0; ask for another --window or --polygon",
          context);
   }
-  const bool is_table = results.size() > 1 || form == AnswerForm::kCsv;
-  if (is_table) write_csv(options.answer, form, context.json, csv_of(results, levels));
+  const bool is_table = results.size() > 1 || !options.answer.output.empty();
+  if (form == AnswerForm::kPlot) {
+    plot_volumes(options.answer.output, options.answer.overwrite, results, levels,
+                 {unit_of_ground(crs), crs.vertical_unit});
+  } else if (is_table) {
+    write_csv(options.answer, form, context.json, csv_of(results, levels));
+  }
   if (context.json) {
     print_answer(results, levels, options, terrain, other ? &*other : nullptr, crs,
                  asked.transformed);
@@ -283,7 +295,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 Action declare_volume(CLI::App& app, Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
   add_terrain_options(app, options->terrain, false);
-  add_level_options(app, options->levels,
+  add_level_options(app, options->terrain.measures, options->levels,
                     "Heights, in the height's unit; of several the answer is a table",
                     "Every multiple of D, from the base");
   app.add_option("--against", options->against,
@@ -292,11 +304,12 @@ Action declare_volume(CLI::App& app, Context& context) {
       ->excludes(app.get_option("--level"))
       ->excludes(app.get_option("--interval"));
   add_region_options(app, options->region, RegionKinds::kWithInside);
-  add_detail_options(app, options->detail, ", of either file; volumes come with intervals",
+  add_detail_options(app, options->terrain.measures, options->detail,
+                     ", of either file; volumes come with intervals",
                      "Measure the TINs of the N most important vertices; volumes come with "
                      "intervals");
   add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer);
+  add_answer_options(app, options->answer, kAnswerKinds);
   app.add_option(
          "--threads", options->threads,
          "Threads (default: one a processor that affinity and cgroups leave this process);\n"

@@ -30,7 +30,8 @@ constexpr ParameterFact ignored(std::string_view name) {
 }
 
 constexpr auto kElevationParameters = std::to_array<ParameterFact>(
-    {{"locations", "string", "lat,lng|lat,lng... or an encoded polyline",
+    {{"locations", "string",
+      "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array of [lat, lng] too",
       "34.34,-118.3|34.35,-118.29"},
      {"path", "string", "instead of locations; with samples, positions along it"},
      {"samples", "integer",
@@ -54,17 +55,37 @@ constexpr auto kElevationParameters = std::to_array<ParameterFact>(
      {"error", "number", "certified error allowed, in metres; without it: full detail", "5"}});
 
 /// A position of latitude and longitude, as MapPoint{longitude, latitude}.
-MapPoint place_of(std::string_view text) {
-  const std::size_t comma = text.find(',');
-  const std::optional<double> lat = number_of(text.substr(0, comma));
-  const std::optional<double> lng =
-      comma == std::string_view::npos ? std::nullopt : number_of(text.substr(comma + 1));
+/// @param text  As the client wrote it.
+MapPoint place_at(std::optional<double> lat, std::optional<double> lng, std::string_view text) {
   if (!lat || !lng || std::abs(*lat) > 90 || std::abs(*lng) > 180) {
     throw Problem(
-        400, "\"" + std::string(text) + "\" is no position; expected latitude,longitude in degrees")
+        400, "\"" + http::shown(text) + "\" is no position; expected latitude,longitude in degrees")
         .at("locations");
   }
   return {*lng, *lat};
+}
+
+MapPoint place_of(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  return place_at(
+      number_of(text.substr(0, comma)),
+      comma == std::string_view::npos ? std::nullopt : number_of(text.substr(comma + 1)), text);
+}
+
+/// [latitude, longitude], {"lat", "lng"}, {"latitude", "longitude"} or "latitude,longitude".
+MapPoint place_of(const nlohmann::json& json) {
+  if (json.is_string()) return place_of(std::string_view(json.get_ref<const std::string&>()));
+  const auto number = [](const nlohmann::json& value) {
+    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+  };
+  const auto member = [&](const char* name) {
+    return json.is_object() && json.contains(name) ? number(json.at(name)) : std::nullopt;
+  };
+  std::optional<double> lat = member("lat"), lng = member("lng");
+  if (!lat) lat = member("latitude");
+  if (!lng) lng = member("longitude");
+  if (json.is_array() && json.size() == 2) lat = number(json[0]), lng = number(json[1]);
+  return place_at(lat, lng, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::vector<MapPoint> places_of(std::string_view text) {
@@ -79,13 +100,24 @@ std::vector<MapPoint> places_of(std::string_view text) {
   return places;
 }
 
+/// The positions of a parameter: text, or an array of JSON. An encoded polyline has no comma, and may
+/// begin as an array does.
+std::vector<MapPoint> given_places(const Question& question, const char* name) {
+  const std::string& text = question.text(name);
+  if (!text.starts_with('[') || text.find(',') == std::string::npos) return places_of(text);
+  std::vector<MapPoint> places;
+  const nlohmann::json array = question.json(name);
+  for (const nlohmann::json& place : array) places.push_back(place_of(place));
+  return places;
+}
+
 std::vector<MapPoint> asked_places(const Asked& asked) {
   const Question& q = asked.question;
   if (q.has("locations") == q.has("path")) {
     throw Problem(400, "give either locations or path, as latitude,longitude between |")
         .at("locations");
   }
-  const std::vector<MapPoint> given = places_of(q.text(q.has("path") ? "path" : "locations"));
+  const std::vector<MapPoint> given = given_places(q, q.has("path") ? "path" : "locations");
   if (given.empty()) throw Problem(400, "no position is given").at("locations");
   check_count(given.size(), asked.options.question.points, "positions", "points", "locations");
   const std::optional<std::uint64_t> samples = q.count("samples");
@@ -119,10 +151,12 @@ struct Elevations {
 
 using Collections = std::vector<std::shared_ptr<const Collection>>;
 
-/// The collections that the path names, all of them looked up before the first one is asked.
+/// The collections that the path names, with a slash behind them or without, all of them looked up
+/// before the first one is asked.
 Collections collections_of(const Asked& asked) {
   Collections collections;
   std::string_view names = asked.rest;
+  if (names.ends_with('/')) names.remove_suffix(1);
   do {
     const std::size_t end = std::min(names.find(','), names.size());
     collections.push_back(asked.catalogue.find(std::string(names.substr(0, end))));

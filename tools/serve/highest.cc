@@ -40,7 +40,7 @@ http::Response answer_highest(const Asked& asked) {
   static_cast<void>(format_of(asked, kHighestFormats));
   const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
   HighestRequest request;
-  if (const auto bbox = asked.question.bbox()) request.window = places.to_terrain(*bbox);
+  if (const auto bbox = asked.question.bbox()) request.region = places.to_terrain(*bbox);
   request.lowest = asked.question.flag("lowest");
   const std::uint64_t listed = asked.question.count("listed").value_or(1);
   check_count(listed, asked.options.question.points, "vertices", "points", "listed");

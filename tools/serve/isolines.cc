@@ -85,7 +85,7 @@ http::Response answer_isolines(const Asked& asked) {
   if (request.levels.size() > kMostAnswered) throw_many_levels("level");
   request.detail = detail_of(asked);
   request.limits = engine_limits(asked);
-  request.window = window_on_terrain(asked, places);
+  request.region = window_on_terrain(asked, places);
   LongText text(asked);
   text.add("{\"type\":\"FeatureCollection\",\"features\":[");
   double certified = asked.facts().base_error, deviation = asked.facts().base_deviation;

@@ -18,6 +18,7 @@
 #include "tools/http/preconditions.h"
 #include "tools/http/problem.h"
 #include "tools/http/range.h"
+#include "tools/serve/packed_answer.h"
 
 namespace ptin::serve {
 
@@ -28,8 +29,6 @@ using http::Request;
 using http::Response;
 
 constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
-/// Smaller answers are sent as they are.
-constexpr std::size_t kLeastPacked = 1024;
 
 bool is_get(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
 
@@ -93,24 +92,6 @@ std::string header_of(const Response& response, std::string_view name) {
   return {};
 }
 
-/// Tells caches that an answer depends on a header, beside those that are told.
-void add_vary(Response& response, const std::string& header) {
-  for (auto& [name, value] : response.headers) {
-    if (name != "Vary") continue;
-    value += ", " + header;
-    return;
-  }
-  response.add("Vary", header);
-}
-
-bool packs_well(std::string_view type) {
-  for (const std::string_view known :
-       {"json", "text/", "xml", "javascript", "wasm", "quantized-mesh", "gltf-binary", "ply"}) {
-    if (type.find(known) != std::string_view::npos) return true;
-  }
-  return false;
-}
-
 Response plain_text(unsigned status, std::string text) {
   Response response;
   response.status = status;
@@ -130,21 +111,6 @@ std::string now_text() {
   const std::size_t n = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
   std::string fraction = std::to_string(millis);
   return std::string(text.data(), n) + "." + std::string(3 - fraction.size(), '0') + fraction + "Z";
-}
-
-/// Packs what packs well, for a client that takes it.
-void pack(bool takes_gzip, Response& response) {
-  if (!packs_well(response.content_type) || response.long_body) return;
-  add_vary(response, "Accept-Encoding");
-  const bool is_packed = std::any_of(response.headers.begin(), response.headers.end(),
-                                     [](const auto& h) { return h.first == "Content-Encoding"; });
-  if (response.body_bytes() < kLeastPacked || is_packed || !takes_gzip) return;
-  response.body = http::gzip(response.lasting_body.empty() ? response.body : response.lasting_body);
-  response.lasting_body = {};
-  response.add("Content-Encoding", "gzip");
-  for (auto& [name, value] : response.headers) {
-    if (name == "ETag") value = http::gzip_etag_of(value);
-  }
 }
 
 }  // namespace
@@ -374,11 +340,12 @@ Response TerrainService::options_of(const Request& request) const {
 
 Response TerrainService::failed(const Request& request, const Error& error, http::GivenUp why) {
   const std::string id = match(request).id;
+  const unsigned status = tools::status_of(error.code()).http;
   switch (error.code()) {
     case ErrorCode::invalid_argument:
-      return Problem(400, error.message()).response();
+      return Problem(status, error.message()).response();
     case ErrorCode::resource_exhausted:
-      return Problem(413,
+      return Problem(status,
                      "the answer takes more memory than the service gives a question of this "
                      "kind, " +
                          tools::human_bytes(
@@ -389,20 +356,20 @@ Response TerrainService::failed(const Request& request, const Error& error, http
           .response();
     case ErrorCode::cancelled:
       if (why == http::GivenUp::kDeadline) {
-        return Problem(503,
+        return Problem(status,
                        "the answer takes longer than the service computes; ask for less: a "
                        "smaller window, or a larger error")
             .beyond("computing")
             .response();
       }
-      return Problem(503, "the service ends").retry_after(1).response();
+      return Problem(status, "the service ends").retry_after(1).response();
     case ErrorCode::corruption:
     case ErrorCode::io_error:
     case ErrorCode::not_found:
     case ErrorCode::unsupported_version:
       metrics_.add("ptin_store_failures_total", "collection=\"" + id + "\"");
       log({{"time", now_text()}, {"event", "store"}, {"id", request.id}, {"detail", error.what()}});
-      return Problem(500,
+      return Problem(status,
                      "the file of this collection is damaged, or cannot be read; whoever runs "
                      "the service finds more in its log")
           .response();
@@ -410,7 +377,8 @@ Response TerrainService::failed(const Request& request, const Error& error, http
       break;
   }
   log({{"time", now_text()}, {"event", "fault"}, {"id", request.id}, {"detail", error.what()}});
-  return Problem(500, "a fault of the service; whoever runs it finds more in its log").response();
+  return Problem(status, "a fault of the service; whoever runs it finds more in its log")
+      .response();
 }
 
 Response TerrainService::failure(const Request& request, std::exception_ptr thrown,

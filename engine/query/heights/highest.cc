@@ -2,15 +2,18 @@
 #include "engine/query/heights/highest.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
+#include "engine/query/heights/polygon_border.h"
 #include "engine/query/heights/window_clip.h"
 #include "engine/query/living/living_ties.h"
 #include "engine/query/select/detail.h"
@@ -46,9 +49,16 @@ class HighestSearch final : private BestStarVisitor {
         detail_(checked(request).detail, terrain.record_source(), context_),
         ties_(detail_) {
     filter_.box = facts_.bounds;
-    if (request.window) {
-      region_.emplace(*request.window, facts_.map);
+    if (request.region) {
+      region_.emplace(*request.region, facts_.map);
       filter_.box = region_->bounds();
+      if (const auto* polygon = std::get_if<Polygon>(&*request.region)) {
+        border_.emplace(*polygon, facts_.map);
+      } else if (!std::holds_alternative<Window>(*request.region)) {
+        throw Error(ErrorCode::invalid_argument,
+                    "the highest point is that of a window or a polygon; a point or a segment has "
+                    "no inside");
+      }
     }
     set_level(detail_, filter_);
     window_ = window_on_grid();
@@ -96,7 +106,7 @@ class HighestSearch final : private BestStarVisitor {
 
   /// The highest vertex of these stars, at the least key in their box.
   [[nodiscard]] Merit bound(const StarAttributes& a) const override {
-    if (is_empty(a.heights)) {
+    if (is_empty(a.heights) || (border_ && !region_->meets(a.box))) {
       return kNoMerit;
     }
     return {request_.lowest ? -a.heights.lo : a.heights.hi, key_of({a.box.min_x, a.box.min_y})};
@@ -147,7 +157,7 @@ class HighestSearch final : private BestStarVisitor {
     return request_.lowest ? -code : code;
   }
 
-  /// Takes the vertices of a surface triangle that lie in the window, and its highest point there
+  /// Takes the vertices of a surface triangle that lie in the region, and its highest point there
   /// if that lies above all vertices.
   void look_at(const LivingTriangle& t) {
     double highest = -kInfinity;
@@ -174,17 +184,23 @@ class HighestSearch final : private BestStarVisitor {
 
   /// Of equally high points takes the one farthest south, then farthest west.
   void look_at_border(const LivingTriangle& t) {
-    std::vector<ClippedCorner> corners;
-    for (const LivingTriangle::Corner& c : t.corner) {
-      const GridPoint p = c.position;
-      corners.push_back({static_cast<double>(p.x), static_cast<double>(p.y), value_of(c)});
+    std::array<ClippedCorner, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const GridPoint p = t.corner[i].position;
+      corners[i] = {static_cast<double>(p.x), static_cast<double>(p.y), value_of(t.corner[i])};
     }
     const auto is_before = [](const ClippedCorner& a, const ClippedCorner& b) {
       return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     };
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
                 corners.end());
-    for (const ClippedCorner& c : clipped(std::move(corners), window_)) {
+    std::vector<ClippedCorner> shared;
+    if (border_) {
+      border_->visit_shared(corners, shared);
+    } else {
+      shared = clipped({corners.begin(), corners.end()}, window_);
+    }
+    for (const ClippedCorner& c : shared) {
       if (c[2] > on_border_[2] || (c[2] == on_border_[2] && is_before(c, on_border_))) {
         on_border_ = c;
       }
@@ -192,20 +208,29 @@ class HighestSearch final : private BestStarVisitor {
   }
 
   [[nodiscard]] GridWindow window_on_grid() const {
-    if (request_.window) {
-      return on_grid(*request_.window, facts_.map);
+    if (request_.region) {
+      if (const auto* window = std::get_if<Window>(&*request_.region)) {
+        return on_grid(*window, facts_.map);
+      }
     }
     const GridBox& b = facts_.bounds;
     return {static_cast<double>(b.min_x), static_cast<double>(b.min_y),
             static_cast<double>(b.max_x), static_cast<double>(b.max_y)};
   }
 
-  /// Sets the point of `result`: the highest vertex, or a higher point on the border of the window.
+  [[nodiscard]] bool region_meets_domain() const {
+    const Tin& t0 = terrain_.t0();
+    if (!border_) return meets_domain(window_, t0, facts_.bounds);
+    return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
+      return region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
+    });
+  }
+
+  /// Sets the point of `result`: the highest vertex, or a higher point on the border of the region.
   void set_point(HighestResult& result) const {
     const double most = best_.empty() ? -kInfinity : best_.begin()->value;
     if (std::max(most, on_border_[2]) == -kInfinity) {
-      const bool is_met = meets_domain(window_, terrain_.t0(), facts_.bounds);
-      result.state = is_met ? PointState::kVoid : PointState::kOutside;
+      result.state = region_meets_domain() ? PointState::kVoid : PointState::kOutside;
       return;
     }
     result.at_vertex = !(on_border_[2] > most);
@@ -229,7 +254,8 @@ class HighestSearch final : private BestStarVisitor {
   Detail detail_;
   LivingTies ties_;
   std::optional<GridRegion> region_;
-  GridWindow window_{};
+  std::optional<PolygonBorder> border_;  ///< Of a polygon.
+  GridWindow window_{};                  ///< Of a window, or of the terrain.
   StarFilter filter_;
   LivingStars living_;
   StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The highest or lowest point of a window, and its highest vertices, found best first over the
-// index.
+// The highest or lowest point of a window or a polygon, and its highest vertices, found best first
+// over the index.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace ptin {
 
 struct HighestRequest {
-  std::optional<Window> window;  ///< Map units, closed. None: the whole terrain.
+  std::optional<Region> region;  ///< A window or a polygon, map units, closed. None: everywhere.
   bool lowest = false;           ///< Ask for the lowest instead; "highest" below then means that.
   std::uint32_t listed = 1;      ///< How many of the highest vertices to list, >= 1.
   DetailRequest detail;          ///< The TIN of which the highest point is wanted.
@@ -31,19 +31,19 @@ struct HeightAt {
 };
 
 struct HighestResult {
-  /// kSurface: `point` is set. kOutside: the window lies outside of the domain, which is the convex
-  /// hull and not its box. kVoid: the window holds nothing but voids.
+  /// kSurface: `point` is set. kOutside: the region lies outside of the domain, which is the convex
+  /// hull and not its box. kVoid: the region holds nothing but voids.
   PointState state = PointState::kSurface;
-  /// The highest point of the surface in the window; of several the first of `vertices`, or else
-  /// one. It is a vertex, or lies on the border of the window: where an edge crosses it, or at a
-  /// corner of the window.
+  /// The highest point of the surface in the region; of several the first of `vertices`, or else
+  /// one. It is a vertex, or lies on the border of the region: where an edge crosses it, or at a
+  /// corner of the region.
   HeightAt point;
   bool at_vertex = false;
   /// Bounds of the height of the source's highest point, as far as both TINs are surface; equal
   /// when exact.
   double height_min = 0, height_max = 0;
-  /// The highest vertices in the window that touch the surface, by falling height; fewer than asked
-  /// for when the window holds fewer. Of equal heights the vertex farthest south comes first, then
+  /// The highest vertices in the region that touch the surface, by falling height; fewer than asked
+  /// for when the region holds fewer. Of equal heights the vertex farthest south comes first, then
   /// the one farthest west, in any file of the same TIN.
   std::vector<HeightAt> vertices;
   /// How far the TIN that was asked is at most from the source, at samples and at any point,
@@ -54,12 +54,14 @@ struct HighestResult {
 };
 
 /// Finds the highest point and the highest vertices. Heights at vertices are as stored; on the
-/// border of the window they are interpolated, with the rounding of a few operations.
-/// @throws Error invalid_argument    the window is inverted or not finite; no vertex is asked for;
-///                                   as Detail
+/// border of the region they are interpolated, with the rounding of a few operations. A vertex on the
+/// border of the region, as GridRegion has it, lies in it.
+/// @throws Error invalid_argument    the region has no inside; no vertex is asked for; as GridRegion
+///                                   and Detail
 ///               resource_exhausted, corruption, io_error, cancelled
 /// Cost: the nodes and pages with a star that reaches above the last vertex listed, or just to it
-/// and with the box farther south; n log n for n vertices. Memory: the vertices listed, and a page.
+/// and with the box farther south (of nodes those that meet the region's box, of pages the region);
+/// n log n for n vertices. Memory: the vertices listed, and a page.
 /// With `vertices` the cost of Detail is added (select/detail.h).
 [[nodiscard]] HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request);
 

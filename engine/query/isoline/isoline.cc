@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <span>
 #include <utility>
+#include <variant>
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline_clip.h"
@@ -23,7 +26,7 @@ constexpr std::uint64_t kBytesAPointOut = 80;
 
 }  // namespace
 
-/// One extraction: tiles, then joining, then cutting at the window.
+/// One extraction: tiles, then joining, then cutting at the region.
 class IsolineExtraction {
  public:
   IsolineExtraction(const OpenedTerrain& terrain, const IsolineRequest& request)
@@ -34,9 +37,19 @@ class IsolineExtraction {
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
         result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
-    if (request.window) {
-      region_.emplace(*request.window, store_.facts().map);
-      window_ = snapped(*request.window, store_.facts().map);
+    if (!request.region) return;
+    region_.emplace(*request.region, store_.facts().map);
+    if (const auto* window = std::get_if<Window>(&*request.region)) {
+      clip_ = [kept = snapped(*window, store_.facts().map)](std::span<const MapPoint> line) {
+        return clip_line(line, kept);
+      };
+    } else if (const auto* polygon = std::get_if<Polygon>(&*request.region)) {
+      clip_ = [sides = PolygonClip(*polygon)](std::span<const MapPoint> line) {
+        return sides.clip(line);
+      };
+    } else {
+      throw Error(ErrorCode::invalid_argument,
+                  "isolines are cut at a window or a polygon; a point or a segment has no inside");
     }
   }
 
@@ -45,8 +58,8 @@ class IsolineExtraction {
     trace();
     result_.lines_ = join_pieces(result_.pieces_, context_);
     admit_lines();
-    if (window_) {
-      cut_at_window(*window_);
+    if (clip_) {
+      cut_at_region();
     }
     drop_single_points(result_.lines_, result_.pieces_, result_.points_);
     if (result_.size() > request_.most_lines) {
@@ -85,11 +98,11 @@ class IsolineExtraction {
     result_.tiles = traces.tiles;
   }
 
-  /// True for the records that the levels may cross in the window, at the level of detail.
+  /// True for the records that the levels may cross in the region, at the level of detail.
   [[nodiscard]] PredicatePtr crossed_records() const {
     std::vector<PredicatePtr> parts{levels_.crossing()};
-    if (request_.window) {
-      parts.push_back(meets_region(*request_.window, store_.facts().map));
+    if (request_.region) {
+      parts.push_back(meets_region(*request_.region, store_.facts().map));
     }
     if (detail_.is_asked()) {
       parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
@@ -109,7 +122,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > request_.limits.memory_bytes / (request_.window ? 8 : 2)) {
+    if (bytes > request_.limits.memory_bytes / (clip_ ? 8 : 2)) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +
@@ -120,7 +133,7 @@ class IsolineExtraction {
     }
   }
 
-  void cut_at_window(const Window& window) {
+  void cut_at_region() {
     PointStore points(request_.limits.memory_bytes / 8, request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
@@ -128,7 +141,7 @@ class IsolineExtraction {
     for (const JoinedLine& joined : result_.lines_.lines) {
       context_.check_stop();
       points_of(joined, result_.lines_, result_.pieces_, result_.points_, line);
-      const ClippedParts clipped = clip_line(line, window);
+      const ClippedParts clipped = clip_(line);
       for (const std::vector<MapPoint>& part : clipped.parts) {
         IsolinePiece piece;
         piece.level = joined.level;
@@ -137,7 +150,7 @@ class IsolineExtraction {
         piece.count = static_cast<std::uint32_t>(part.size());
         if ((pieces.size() + 1) * kBytesAPiece > request_.limits.memory_bytes / 4) {
           throw Error(ErrorCode::resource_exhausted,
-                      "the window cuts the isolines into more than " +
+                      "the region cuts the isolines into more than " +
                           std::to_string(pieces.size()) +
                           " parts, more than the memory holds: give more memory, or "
                           "ask for fewer levels",
@@ -167,7 +180,7 @@ class IsolineExtraction {
   const IsolineRequest& request_;
   LevelSet levels_;
   std::optional<GridRegion> region_;
-  std::optional<Window> window_;  ///< Where lines are cut.
+  std::function<ClippedParts(std::span<const MapPoint>)> clip_;  ///< At the region; none: nowhere.
   QueryContext context_;
   Detail detail_;
   Isolines result_;

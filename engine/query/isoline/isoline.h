@@ -22,9 +22,10 @@
 namespace ptin {
 
 struct IsolineRequest {
-  std::vector<double> levels;    ///< Height's unit, in any order; repetitions are dropped.
-  std::optional<Window> window;  ///< Map units; lines are cut at its border. None: everywhere.
-  DetailRequest detail;          ///< The TIN of which the isolines are.
+  std::vector<double> levels;  ///< Height's unit, in any order; repetitions are dropped.
+  /// A window or a polygon, map units; lines are cut at its border. None: everywhere.
+  std::optional<Region> region;
+  DetailRequest detail;                   ///< The TIN of which the isolines are.
   std::uint64_t most_lines = 10'000'000;  ///< More lines than this are refused.
   QueryLimits limits;
   /// Folder of a temporary file for points that do not fit the memory. Empty: no such file, and an
@@ -47,10 +48,10 @@ struct Isoline {
 /// The isolines of a request. Higher ground lies to the right of each.
 ///
 /// Laws. Lines of one TIN never cross; they share a point only at a vertex exactly at their level.
-/// A line ends on the border of the surface (at the domain's border or a void) or of the window. A
+/// A line ends on the border of the surface (at the domain's border or a void) or of the region. A
 /// ridge exactly at a level, lower on both sides, is gone round: there and back. A peak exactly at
 /// a level gives no line. Lines and their order do not depend on memory limit or tiles. The lines
-/// of any window are those of the whole terrain, cut: a cut is computed from the ends of the
+/// of any region are those of the whole terrain, cut: a cut is computed from the ends of the
 /// segment it cuts.
 /// Threads: const functions may be called at once.
 class Isolines {
@@ -83,7 +84,8 @@ class Isolines {
 
 /// Extracts isolines, all levels together. The terrain is processed in tiles that fit the memory;
 /// lines are joined exactly across tiles.
-/// @throws Error invalid_argument    levels, window or tolerance mean nothing; as Detail
+/// @throws Error invalid_argument    levels, region or tolerance mean nothing, or the region has no
+///                                   inside; as Detail
 ///               resource_exhausted  more than most_lines lines, told before any is handed out; a
 ///                                   tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled

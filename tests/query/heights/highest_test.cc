@@ -105,7 +105,7 @@ Window window_in(std::mt19937_64& random, const StoreFacts& facts) {
 void check(const HighestResult& got, const HighestRequest& request, const Tin& tin,
            const StoreFacts& facts) {
   const double sign = request.lowest ? -1.0 : 1.0;
-  const Window& w = *request.window;
+  const Window& w = std::get<Window>(*request.region);
   const Brute wanted = brute_force(tin, facts, w, sign);
   RC_ASSERT(got.vertices.size() == std::min<std::size_t>(request.listed, wanted.vertices.size()));
   for (std::size_t k = 0; k < got.vertices.size(); ++k) {
@@ -137,7 +137,7 @@ RC_GTEST_PROP(Highest, IsThatOfAllTriangles, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   for (int i = 0; i < 8; ++i) {
     HighestRequest request;
-    request.window = window_in(random, h.facts);
+    request.region = window_in(random, h.facts);
     request.lowest = random() % 2 == 0;
     request.listed = 1 + static_cast<std::uint32_t>(random() % 5);
     check(highest(terrain, request), request, h.full, h.facts);
@@ -158,7 +158,7 @@ RC_GTEST_PROP(Highest, AtALevelOfDetailIsThatOfItsTriangles, (std::uint64_t seed
       request.detail.vertices = level.detail.vertices =
           h.t0.vertices.size() + random() % (h.records.size() + 3);
     }
-    request.window = window_in(random, h.facts);
+    request.region = window_in(random, h.facts);
     request.lowest = random() % 2 == 0;
     request.listed = 1 + static_cast<std::uint32_t>(random() % 20);
     const RefinedTin refined = terrain.refine(level);
@@ -178,7 +178,7 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
   std::mt19937_64 random(11);
   for (int i = 0; i < 40; ++i) {
     HighestRequest request;
-    request.window = window_in(random, facts);
+    request.region = window_in(random, facts);
     request.lowest = i % 2 == 0;
     if (i % 3 == 0) {
       request.detail.vertices = 100 + random() % 20000;
@@ -188,7 +188,8 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
     const HighestResult got = highest(terrain, request);
     if (got.state != PointState::kSurface) continue;
     const double sign = request.lowest ? -1.0 : 1.0;
-    const double truth = sign * brute_force(full, facts, *request.window, sign).most;
+    const double truth =
+        sign * brute_force(full, facts, std::get<Window>(*request.region), sign).most;
     EXPECT_LE(got.height_min, truth);
     EXPECT_GE(got.height_max, truth);
     EXPECT_EQ(got.height_max - got.height_min > 0, got.certified_deviation > 0);
@@ -228,7 +229,7 @@ TEST(Highest, ListsAnyNumberOfVerticesOverVoids) {
     const TemporaryStore file(h);
     const Terrain terrain(file.open());
     HighestRequest request;
-    request.window = Window{-1e9, -1e9, 1e9, 1e9};
+    request.region = Window{-1e9, -1e9, 1e9, 1e9};
     for (const std::uint32_t listed : {1, 2, 3, 7, 30, 31, 100, 500, 1000, 1400, 1600, 100000}) {
       for (const bool lowest : {false, true}) {
         request.listed = listed;
@@ -342,7 +343,7 @@ TEST(Highest, RefusesWhatMeansNothing) {
   request.detail.vertices = 100;
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
   request.detail.vertices.reset();
-  request.window = Window{1, 0, 0, 1};
+  request.region = Window{1, 0, 0, 1};
   EXPECT_THROW(static_cast<void>(highest(terrain, request)), Error);
 }
 

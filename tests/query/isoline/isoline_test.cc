@@ -200,9 +200,9 @@ RC_GTEST_PROP(Isolines, OfAWindowAreThoseOfTheTerrainCut, (std::uint64_t seed)) 
   for (int i = 0; i < 4; ++i) {
     IsolineRequest request;
     request.levels = random_levels(random, h, 3);
-    request.window = isoline_window(random, h.facts);
+    request.region = isoline_window(random, h.facts);
     RC_ASSERT(pieces_of(isolines(terrain, request)) ==
-              brute_force(h.full, h.facts, request.levels, &*request.window));
+              brute_force(h.full, h.facts, request.levels, &std::get<Window>(*request.region)));
   }
 }
 
@@ -232,9 +232,9 @@ RC_GTEST_PROP(Isolines, OfTwoWindowsMeetInTheSameBits, (std::uint64_t seed)) {
   const double side = h.facts.map.to_map(x, 0).x;
   const MapPoint low = h.facts.map.to_map(b.min_x - 1, b.min_y - 1);
   const MapPoint high = h.facts.map.to_map(b.max_x + 1, b.max_y + 1);
-  request.window = Window{low.x, low.y, side, high.y};
+  request.region = Window{low.x, low.y, side, high.y};
   const Isolines left = isolines(terrain, request);
-  request.window = Window{side, low.y, high.x, high.y};
+  request.region = Window{side, low.y, high.x, high.y};
   const Isolines right = isolines(terrain, request);
   RC_ASSERT(ends_at(left, side) == ends_at(right, side));
 }

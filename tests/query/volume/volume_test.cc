@@ -243,27 +243,77 @@ TEST(Volume, IsTheSameForAnyMemoryTilesAndThreads) {
   }
 }
 
+/// Each of the levels, asked together, is what it is by itself, to the bit.
+void expect_each_by_itself(const OpenedTerrain& terrain, VolumeRequest request,
+                           const std::vector<double>& levels) {
+  const std::vector<VolumeResult> all = volumes(terrain, request, levels);
+  ASSERT_EQ(all.size(), levels.size());
+  request.threads = 1;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    request.level = levels[i];
+    const VolumeResult one = volume(terrain, request);
+    EXPECT_EQ(bits_of(all[i]), bits_of(one)) << levels[i];
+    EXPECT_EQ(all[i].exact, one.exact);
+    EXPECT_EQ(all[i].certificate.error, one.certificate.error);
+    EXPECT_EQ(all[i].certificate.deviation, one.certificate.deviation);
+    EXPECT_EQ(all[i].border_move, one.border_move);
+  }
+}
+
+/// A third of the coast is void, a third of it the sea, at 0.
 TEST(Volume, OfSeveralLevelsIsThatOfEachByItself) {
   const Terrain& coast = reference::built_terrain("coast_257.tif");
+  const Polygon part{{{at(coast, 0.1, 0.05), at(coast, 0.95, 0.3), at(coast, 0.4, 0.9)},
+                      {at(coast, 0.4, 0.3), at(coast, 0.55, 0.35), at(coast, 0.42, 0.5)}}};
+  const std::vector<double> levels = {33.3, 0.0, -10.0};
   VolumeRequest request = built_request(coast);
   request.threads = 2;
-  for (const bool in_part : {false, true}) {
-    if (in_part) {
-      request.detail.tolerance = 1.0;
-      request.region = Polygon{{{at(coast, 0.1, 0.05), at(coast, 0.95, 0.3), at(coast, 0.4, 0.9)}}};
-    }
-    std::vector<double> levels;
-    for (int i = 0; i < 12; ++i) levels.push_back(-5.0 + 7.3 * i);
-    const std::vector<VolumeResult> all = volumes(coast, request, levels);
-    ASSERT_EQ(all.size(), levels.size());
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      request.level = levels[i];
-      EXPECT_EQ(bits_of(all[i]), bits_of(volume(coast, request))) << levels[i];
-    }
+  request.tile_bytes = 1 << 18;
+  EXPECT_GT(volume(coast, request).void_area, 0);
+  expect_each_by_itself(coast, request, levels);
+  request.region = part;
+  expect_each_by_itself(coast, request, levels);
+  for (const double tolerance : {1.0, 20.0}) {
+    request.detail.tolerance = tolerance;
+    expect_each_by_itself(coast, request, levels);
   }
-  EXPECT_THROW(static_cast<void>(volumes(coast, request, {})), Error);
-  request.other = &coast;
-  EXPECT_THROW(static_cast<void>(volumes(coast, request, std::vector<double>{1.0, 2.0})), Error);
+  request.region = std::nullopt;
+  request.detail = {std::nullopt, 800};
+  expect_each_by_itself(coast, request, levels);
+}
+
+TEST(Volume, OfSeveralLevelsIsThatOfEachOnRandomTerrains) {
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937_64 random(seed);
+    const Hierarchy h = small_hierarchy(seed);
+    const TemporaryStore store(h);
+    const OpenedTerrain terrain(store.open());
+    VolumeRequest request = request_for(random_rings(random, h.facts));
+    if (seed % 2 == 0) request.detail.tolerance = 0.5 * static_cast<double>(seed % 7);
+    if (seed % 4 == 0) {
+      request.border_move = [](const StoreFile&, double certified_error) {
+        return certified_error;
+      };
+    }
+    std::vector<double> levels(50);
+    for (double& level : levels) level = random_level(random, h.facts);
+    expect_each_by_itself(terrain, request, levels);
+  }
+}
+
+TEST(Volume, OfSeveralLevelsRefusesNoneAndThoseBesideATerrain) {
+  const TemporaryStore store(small_hierarchy(1));
+  const OpenedTerrain terrain(store.open());
+  VolumeRequest request;
+  const std::vector<double> two = {1.0, 2.0};
+  EXPECT_THROW(static_cast<void>(volumes(terrain, request, {})), Error);
+  EXPECT_THROW(static_cast<void>(volumes(terrain, request, std::vector<double>{1.0, NAN})), Error);
+  request.limits.memory_bytes = 1 << 20;
+  EXPECT_THROW(static_cast<void>(volumes(terrain, request, std::vector<double>(10'000, 1.0))),
+               Error);
+  request.other = &terrain;
+  EXPECT_THROW(static_cast<void>(volumes(terrain, request, two)), Error);
 }
 
 TEST(Volume, OfTwoHalvesIsThatOfTheWhole) {
