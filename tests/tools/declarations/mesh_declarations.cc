@@ -106,6 +106,7 @@ std::vector<Declaration> mesh_declarations() {
            ply("comment crs: EPSG:25832\ncomment vertical_crs: EPSG:5773\n"),
            ply("comment crs: EPSG:25832\n")),
       file("mesh.ply_units", ".ply", ply("comment units: ft\n"), ply("")),
+      file("mesh.ply_height_units", ".ply", ply("comment height_units: ft\n"), ply("")),
       file("mesh.ply_shift", ".ply", ply("obj_info offset 500000 5200000 0\n"), ply("")),
       file("mesh.ply_strips", ".ply",
            ply("", "element tristrips 1\nproperty list int int vertex_indices\n"), ply("")),
