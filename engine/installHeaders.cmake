@@ -13,6 +13,7 @@ set(public_headers
     engine/construct/build_parts.h
     engine/construct/build_worker.h
     engine/construct/grid/decimal.h
+    engine/construct/grid/left_out.h
     engine/construct/grid/source_disk.h
     engine/construct/grid/source_options.h
     engine/construct/grid/source_point.h

@@ -14,7 +14,8 @@ LineChoice line_choice_of(const BuildOptions& options) {
 }
 
 PointChoice point_choice_of(const BuildOptions& options) {
-  return {options.classes, options.returns, options.layer, options.z_field, options.columns};
+  return {options.classes, options.returns, options.layer,
+          options.z_field, options.columns, options.skip_invalid};
 }
 
 SourceOptions source_options_of(const BuildOptions& options) {

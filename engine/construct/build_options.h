@@ -29,6 +29,7 @@ struct BuildOptions {
   /// are degrees.
   std::optional<double> max_edge;
   std::vector<std::string> columns;  ///< Text: as PointChoice::columns.
+  bool skip_invalid = false;         ///< Text: as PointChoice::skip_invalid.
   std::string z_field;  ///< OGR: the attribute with the heights; "" for the geometry's z.
   /// Points: files of lines whose pieces are edges of the full TIN; and the layer in each of them,
   /// "" where there is only one.

@@ -43,7 +43,7 @@ void report_counts(BuildReport& report, const TinTriangles& triangles) {
   const TinCounts& counts = triangles.counts();
   report.warnings.join(triangles.warnings());
   report.source_samples = report.vertices = counts.vertices;
-  report.left_out_points = counts.unused_vertices;
+  report.left_out.add(LeftOutReason::kNoTriangle, counts.unused_vertices);
   report.left_out_triangles = counts.left_out_triangles;
   report.void_triangles = counts.void_triangles;
   report.merged_points = counts.merged_vertices;

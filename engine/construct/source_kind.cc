@@ -18,6 +18,8 @@ const char* misfit_of_raster(const BuildOptions& o) {
   if (!o.classes.empty()) return "--class is for LAS, and this is a raster; leave it out";
   if (!o.columns.empty())
     return "--columns is for points as text, and this is a raster; leave it out";
+  if (o.skip_invalid)
+    return "--skip-invalid is for points as text, and this is a raster; leave it out";
   if (o.returns != ReturnChoice::kAll)
     return "--returns is for LAS, and this is a raster; leave it out";
   if (o.duplicates) return "--duplicates is for points, and this is a raster; leave it out";
@@ -36,6 +38,8 @@ const char* misfit_of_points(const BuildOptions& o) {
 const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
   if (!o.classes.empty()) return "--class is for LAS, and this is a TIN; leave it out";
   if (!o.columns.empty()) return "--columns is for points as text, and this is a TIN; leave it out";
+  if (o.skip_invalid)
+    return "--skip-invalid is for points as text, and this is a TIN; leave it out";
   if (o.returns != ReturnChoice::kAll)
     return "--returns is for LAS, and this is a TIN; leave it out";
   if (o.duplicates && !o.repair)

@@ -78,7 +78,7 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
-          {"left_out_points", r.left_out_points},
+          {"left_out_points", r.left_out.total()},
           {"merged_points", r.merged_points},
           {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
           {"height_rounding", r.height_rounding}};
@@ -130,6 +130,9 @@ nlohmann::json options_json(const BuildOptions& o) {
   }
   if (!o.columns.empty()) {
     json["columns"] = o.columns;
+  }
+  if (o.skip_invalid) {
+    json["skip_invalid"] = true;
   }
   if (!o.z_field.empty()) {
     json["z_field"] = o.z_field;

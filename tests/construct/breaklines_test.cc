@@ -233,7 +233,7 @@ TEST(Boundary, LeavesOutWhatLiesOutside) {
   BreaklineBuild plain, source(true);
   (void)plain.run("plain.ptin", 8);
   const Terrain terrain = Terrain::open(source.run("out.ptin", 8));
-  EXPECT_GT(source.report.left_out_points, 300U);
+  EXPECT_GT(source.report.left_out.total(), 300U);
   EXPECT_EQ(source.report.lone_samples, 0U);
   const auto state = [&](double x, double y) {
     const std::vector<MapPoint> points = {{x, y}};

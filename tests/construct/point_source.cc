@@ -147,7 +147,7 @@ PointSet read_points(const std::vector<std::string>& paths, const SourceOptions&
   SourceWarnings ignored;
   set_crs(set.frame, resolve_source_crs({raw.crs, ""}, options, "", ignored));
   set.frame.map = grid.map();
-  set.left_out_points = raw.left_out;
+  set.left_out_points = raw.left_out.total();
   add_points(spooled(files, raw), grid, options.merge, set);
   check_area(set, context);
   return set;

@@ -52,7 +52,7 @@ TEST_F(SourceKindOf, InputsIsTheOneOfAllOfThem) {
 }
 
 TEST_F(SourceKindOf, InputsRefusesOptionsThatWouldBeIgnored) {
-  BuildOptions resolution, classes, repair, max_edge, z_field, layer, columns;
+  BuildOptions resolution, classes, repair, max_edge, z_field, layer, columns, skip_invalid;
   resolution.resolution = 1.0;
   classes.classes = {2};
   repair.repair = true;
@@ -60,11 +60,13 @@ TEST_F(SourceKindOf, InputsRefusesOptionsThatWouldBeIgnored) {
   z_field.z_field = "height";
   layer.layer = "spots";
   columns.columns = {"x", "y", "z"};
-  for (const BuildOptions& options : {resolution, classes, repair, max_edge, columns}) {
+  skip_invalid.skip_invalid = true;
+  for (const BuildOptions& options :
+       {resolution, classes, repair, max_edge, columns, skip_invalid}) {
     EXPECT_NE(refusal({raster_}, options).find("leave it out"), std::string::npos);
   }
   EXPECT_NE(refusal({points_}, repair).find("--repair is for TINs"), std::string::npos);
-  for (const BuildOptions& options : {classes, z_field, layer, max_edge, columns}) {
+  for (const BuildOptions& options : {classes, z_field, layer, max_edge, columns, skip_invalid}) {
     EXPECT_NE(refusal({tin_}, options).find("leave it out"), std::string::npos);
   }
   // One that is not there is told of when it is opened.

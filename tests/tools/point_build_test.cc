@@ -160,6 +160,69 @@ TEST(PointBuild, WarnsWhereMergingMovedAHeightFar) {
   EXPECT_EQ(warning("far.xyz", {"--duplicates", "mean"}), "") << "who chose a rule knows";
 }
 
+TEST(PointBuild, CountsPointsThatAreLeftOutByReason) {
+  const TestFolder folder;
+  LasFileMaker file;
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) file.points.push_back({100 * x, 100 * y, 10 * x + y + 1, 2});
+  }
+  file.points.push_back({100, 100, 7, 7});               // of another class
+  file.points.push_back({100, 100, 7, 7, true});         // and withheld, which comes first
+  file.points.push_back({100, 100, 7, 2, false, 1, 2});  // not the last return
+  file.points.push_back({100, 100, 0, 2});               // of no height
+  file.points.push_back({90000, 0, 7, 2});               // outside
+  file.points.push_back({90000, 0, 7, 2});
+  write_file(folder.file("a.las"), file.bytes());
+  const std::vector<std::string> choices = {folder.file("a.las"),
+                                            "--class",
+                                            "2",
+                                            "--returns",
+                                            "last",
+                                            "--nodata",
+                                            "0",
+                                            "--bbox",
+                                            "-1",
+                                            "-1",
+                                            "9",
+                                            "9"};
+  const auto built = built_points(folder, choices);
+  EXPECT_EQ(built["left_out_points"], 6);
+  EXPECT_EQ(built["left_out"], (nlohmann::json{{"invalid", 0},
+                                               {"withheld", 1},
+                                               {"class", 1},
+                                               {"return", 1},
+                                               {"no_height", 0},
+                                               {"nodata", 1},
+                                               {"bbox", 2},
+                                               {"boundary", 0},
+                                               {"no_triangle", 0}}));
+  std::vector<std::string> in_words = {"build", "-o", folder.file("words.ptin")};
+  in_words.insert(in_words.end(), choices.begin(), choices.end());
+  const auto words = run_ptin(in_words);
+  EXPECT_NE(
+      words.out.find("6 points: 1 withheld, 1 of another class, 1 of another return, 1 with the "
+                     "height of --nodata, 2 outside of --bbox\n"),
+      std::string::npos)
+      << words.out << words.err;
+}
+
+TEST(PointBuild, PassesOverRowsThatAreNoPointsWhereItMay) {
+  const TestFolder folder;
+  write_file(folder.file("a.csv"), "x,y,z\n0,0,1\n9,0,nan\n9,0,2\n0,9\n0,9,3\n9,9,4\n");
+  const auto refused =
+      run_ptin({"build", folder.file("a.csv"), "-o", folder.file("out.ptin"), "--overwrite"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("a.csv:3: "), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("--skip-invalid"), std::string::npos) << refused.err;
+  const auto built = built_points(folder, {folder.file("a.csv"), "--skip-invalid"});
+  EXPECT_EQ(built["samples"], 4);
+  EXPECT_EQ(built["left_out"]["invalid"], 2);
+  EXPECT_EQ(built["warnings"][0]["kind"], "invalid_rows");
+  EXPECT_EQ(built["warnings"][0]["line"], 3);
+  EXPECT_EQ(built["warnings"][0]["count"], 2);
+  expect_verified(folder, "a.csv");
+}
+
 TEST(PointBuild, TakesTheReturnsOfLasThatAreAskedFor) {
   const TestFolder folder;
   LasFileMaker file;

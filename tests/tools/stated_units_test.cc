@@ -115,6 +115,34 @@ TEST_F(StatedUnits, LayersStateCrsAndVerticalPart) {
   }
 }
 
+TEST_F(StatedUnits, ViewshedsStateCrsAndVerticalPart) {
+  build("EPSG:32611+6360");
+  GDALAllRegister();
+  const std::vector<std::string> from = {"500100", "3999900", "2", "--radius", "300"};
+  const auto seen = [&](const std::string& name) {
+    std::vector<std::string> all = {"viewshed", store_};
+    all.insert(all.end(), from.begin(), from.end());
+    all.insert(all.end(), {"-o", folder_.file(name), "--overwrite", "-q"});
+    expect_done(all);
+    return GDALDatasetUniquePtr(
+        GDALDataset::Open(folder_.file(name).c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR));
+  };
+  const auto raster = seen("v.tif");
+  ASSERT_TRUE(raster);
+  expect_crs(raster->GetSpatialRef(), "v.tif");
+  const auto vertices = seen("v.gpkg");
+  ASSERT_TRUE(vertices);
+  ASSERT_NE(vertices->GetLayer(0)->GetSpatialRef(), nullptr);
+  EXPECT_NE(std::string(vertices->GetLayer(0)->GetSpatialRef()->GetName()).find("UTM zone 11N"),
+            std::string::npos);
+}
+
+TEST_F(StatedUnits, GlbsStateTheUnitOfHeights) {
+  build("EPSG:32611+6360");
+  EXPECT_NE(read_file(written("refine", "u.glb")).find("\"height_unit\":\"US survey foot\""),
+            std::string::npos);
+}
+
 TEST_F(StatedUnits, MeshesNameTheCrsInTheirOwnWay) {
   build("EPSG:32611+6360");
   for (const char* name : {"m.ply", "m.xml", "m.dxf", "m.glb"}) {

@@ -56,6 +56,22 @@ TEST_F(WrittenCrs, TellsHeightsAboveTheEllipsoid) {
   expect_the_same({".ply", ".obj"});
 }
 
+TEST_F(WrittenCrs, TellsTheUnitOfHeightsWhereNoVerticalCrsDoes) {
+  build({"--a-srs", "EPSG:25832"}, "x,y,z[ft]\n");
+  EXPECT_EQ(facts("p.ptin")[1].at("height"), "foot");
+  expect_the_same({".ply", ".obj", ".xml"});
+}
+
+TEST_F(WrittenCrs, TellsTheUnitsWhereThereIsNoCrs) {
+  build({}, "x[m],y[m],z[ft]\n");
+  EXPECT_EQ(facts("p.ptin")[1], (json{{"horizontal", "metre"}, {"height", "foot"}}));
+  expect_the_same({".ply", ".obj", ".xml"});
+  build({}, "x[us-ft],y[us-ft],z[us-ft]\n");
+  expect_the_same({".ply", ".obj"});
+  build({}, "x,y,z\n");
+  expect_the_same({".ply", ".obj"});
+}
+
 TEST_F(WrittenCrs, TellsTheVerticalCrs) {
   build({"--a-srs", "EPSG:25832+7837"});
   expect_the_same({".ply", ".obj", ".xml"});

@@ -3,6 +3,7 @@
 
 #include "engine/error.h"
 #include "tools/export/tin_sink.h"
+#include "tools/formats/crs_lines.h"
 #include "tools/output/output_file.h"
 #include "tools/output/spill_file.h"
 
@@ -21,8 +22,7 @@ std::string header_of(const CrsFacts& crs, std::uint64_t vertices, std::uint64_t
   const std::size_t spare = 2 * kMostDigits + 4 - v.size() - t.size() - index.size();
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by ptin";
   text.append(spare, '.').append("\n");
-  if (!crs.horizontal_text().empty()) text += "comment crs: " + crs.horizontal_text() + "\n";
-  if (!crs.vertical_text().empty()) text += "comment vertical_crs: " + crs.vertical_text() + "\n";
+  text += crs_lines(crs, "comment ");
   text += "element vertex " + v + "\n";
   text += "property double x\nproperty double y\nproperty double z\n";
   text += "element face " + t + "\n";

@@ -70,6 +70,7 @@ nlohmann::json scene_of(const Mesh& mesh, const LocalFrame& frame) {
       {"origin", frame.origin}, {"scale", frame.scale}, {"axes", "x east, y up, z south"}};
   if (!mesh.crs.horizontal_text().empty()) extras["crs"] = mesh.crs.horizontal_text();
   if (!mesh.crs.vertical_text().empty()) extras["vertical_crs"] = mesh.crs.vertical_text();
+  if (mesh.crs.vertical_unit != "unknown") extras["height_unit"] = mesh.crs.vertical_unit;
   nlohmann::json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "ptin"}};
   json["scene"] = 0;

@@ -2,6 +2,7 @@
 //
 // Wavefront OBJ: map coordinates as they are (x east, y north, z up), every digit that a double
 // needs, indices from 1.
+#include "tools/formats/crs_lines.h"
 #include "tools/formats/mesh_stream.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/output_file.h"
@@ -16,11 +17,7 @@ class Obj final : public MeshStream {
   explicit Obj(const MeshStreamTarget& target)
       : out_(target.path, target.overwrite), faces_(target.path) {
     std::string head = "# written by ptin; x east, y north, z up\n";
-    if (!target.crs.horizontal_text().empty())
-      head += "# crs: " + target.crs.horizontal_text() + "\n";
-    if (!target.crs.vertical_text().empty())
-      head += "# vertical_crs: " + target.crs.vertical_text() + "\n";
-    out_.write(head);
+    out_.write(head += crs_lines(target.crs, "# "));
   }
 
   void add_vertex(const Point& point) override {

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "engine/error.h"
+#include "tools/formats/crs_lines.h"
 #include "tools/formats/mesh_writer.h"
 
 namespace ptin::tools {
@@ -15,10 +16,7 @@ namespace {
 
 std::string header_of(const Mesh& mesh) {
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by ptin\n";
-  if (!mesh.crs.horizontal_text().empty())
-    text += "comment crs: " + mesh.crs.horizontal_text() + "\n";
-  if (!mesh.crs.vertical_text().empty())
-    text += "comment vertical_crs: " + mesh.crs.vertical_text() + "\n";
+  text += crs_lines(mesh.crs, "comment ");
   text += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
   text += "property double x\nproperty double y\nproperty double z\n";
   text += "element face " + std::to_string(mesh.triangles.size()) + "\n";

@@ -25,6 +25,7 @@
 #include "tools/ptin/build_show.h"
 #include "tools/ptin/build_warnings.h"
 #include "tools/ptin/error_stats.h"
+#include "tools/ptin/left_out_points.h"
 #include "tools/ptin/parts_plan.h"
 #include "tools/ptin/query_options.h"
 #include "tools/thread_count.h"
@@ -65,7 +66,8 @@ nlohmann::json report_json(const BuildCommand& command, const BuildReport& r,
           {"samples", r.source_samples},
           {"void_samples", r.void_samples},
           {"lone_samples", r.lone_samples},
-          {"left_out_points", r.left_out_points},
+          {"left_out_points", r.left_out.total()},
+          {"left_out", left_out_json(r.left_out)},
           {"empty_inputs", r.empty_inputs},
           {"left_out_triangles", r.left_out_triangles},
           {"void_triangles", r.void_triangles},
@@ -132,10 +134,9 @@ void print_report(const BuildCommand& command, const BuildReport& r, const FlatR
     std::printf("  lone       %s without a triangle, treated as void\n",
                 counted(r.lone_samples, "sample").c_str());
   }
-  if (r.left_out_points > 0) {
-    std::printf(
-        "  left out   %s, by class or place, withheld, without a height, or in no triangle\n",
-        counted(r.left_out_points, "point").c_str());
+  if (r.left_out.total() > 0) {
+    std::printf("  left out   %s: %s\n", counted(r.left_out.total(), "point").c_str(),
+                reasons_text(r.left_out).c_str());
   }
   if (r.left_out_triangles + r.void_triangles > 0) {
     std::printf("  triangles  %s void ones fill holes and pockets; %s hidden ones left out\n",

@@ -49,6 +49,10 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "x y z)")
       ->delimiter(',')
       ->type_name("NAME");
+  app.add_flag("--skip-invalid", options.skip_invalid,
+               "Text: pass over rows that are no points, and say how many there are (default: the "
+               "first\n"
+               "one is refused)");
   app.add_option("--z-field", options.z_field,
                  "The attribute that holds the height of a layer's points (default: their z)")
       ->type_name("NAME");

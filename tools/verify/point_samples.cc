@@ -148,7 +148,7 @@ void PointSamples::read_text(const std::string& path, const std::stop_token& sto
     if (lines++ % kLinesBetweenLooks == 0) stop_if_asked(stop, "verification");
     if (line.misfit.empty()) {
       add(line.point);
-    } else {
+    } else if (!choices_.points.skip_invalid) {
       misfits_.add(path + ":" + std::to_string(line.number) + ": " + line.misfit);
     }
   }

@@ -65,6 +65,8 @@ SampleChoices choices_of(const StoreFile& store) {
   if (duplicates == "min") choices.duplicates = PointMerge::kLowest;
   if (duplicates == "max") choices.duplicates = PointMerge::kHighest;
   if (duplicates == "first") choices.duplicates = PointMerge::kFirst;
+  const auto skips = options.find("skip_invalid");
+  choices.points.skip_invalid = skips != options.end() && skips->is_boolean() && skips->get<bool>();
   choices.points.layer = text("layer");
   choices.points.z_field = text("z_field");
   if (const auto bbox = options.find("bbox");

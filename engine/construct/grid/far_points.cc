@@ -71,9 +71,11 @@ void FarPoints::join(const FarPoints& other) noexcept {
   }
 }
 
-SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file) const {
+SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file,
+                                   bool are_vertices) const {
   constexpr double kNear = 100.0;
   constexpr std::array<const char*, 3> kNames = {"x", "y", "height"};
+  const std::string point = are_vertices ? "vertex" : "point";
   SourceWarnings found;
   const auto& lowest = low_[2].values;
   const bool is_no_height =
@@ -82,10 +84,11 @@ SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file
   if (is_no_height) {
     const std::string value = text_of(lowest[0].value);
     found.add({"undeclared_nodata",
-               "the height of a point is " + value +
+               "the height of a " + point + " is " + value +
                    ", which often means that there is none, and no other height is near it; it is "
                    "taken as it is, at " +
-                   text_of(lowest[0].place) + "; --nodata " + value + " leaves such points out",
+                   text_of(lowest[0].place) + "; --nodata " + value + " leaves " +
+                   (are_vertices ? "triangles with such corners out" : "such points out"),
                file, value, 0, lowest[0].points});
   }
   for (std::size_t axis = 0; axis < 3 && points >= kFewestPoints; ++axis) {
@@ -102,8 +105,9 @@ SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file
         count += ends.values[i].points;
       }
       found.add({"far_points",
-                 std::string("a point lies far from all others, by its ") + kNames[axis] + ", at " +
-                     text_of(ends.values[0].place) + "; if it is a fault, leave it out by --bbox" +
+                 "a " + point + " lies far from all others, by its " + kNames[axis] + ", at " +
+                     text_of(ends.values[0].place) + "; if it is a fault, " +
+                     (are_vertices ? "take it out of the file" : "leave it out by --bbox") +
                      (axis == 2 ? ", or by --nodata with its height" : ""),
                  file, "", 0, count});
       return found;

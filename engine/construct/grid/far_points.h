@@ -49,9 +49,11 @@ class FarPoints {
   /// Warns of up to three values of x, of y or of the height, each of a few points, that lie ten times
   /// as far from the next value as all others reach; and of heights that often stand for none, such
   /// as -9999, where no other height is near.
-  /// @param points  How many were seen.
-  /// @param file    The source, for the warnings.
-  [[nodiscard]] SourceWarnings warnings(std::uint64_t points, const std::string& file) const;
+  /// @param points        How many were seen.
+  /// @param file          The source, for the warnings.
+  /// @param are_vertices  They are those of a TIN, which no box cuts.
+  [[nodiscard]] SourceWarnings warnings(std::uint64_t points, const std::string& file,
+                                        bool are_vertices) const;
 
  private:
   std::array<EndValues, 3> low_, high_;

@@ -28,4 +28,20 @@ void require_resolvable(const AffineMap& map, std::int64_t columns, std::int64_t
   throw Error(ErrorCode::invalid_argument, text + ("; " + remedy), context);
 }
 
+void warn_of_shift(double shift, const TerrainFrame& frame, const std::string& file,
+                   SourceWarnings& warnings) {
+  const double most = frame.horizontal_unit == "degree" ? 1e-8 : 1e-3;
+  if (shift <= most) {
+    return;
+  }
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "the coordinates have more digits than a grid keeps that reaches so far, and were "
+      "rounded to steps of %g, which moved the farthest by %.3g; where that is enough say "
+      "so with --resolution %g, else build parts of the source",
+      frame.map.step_x, shift, frame.map.step_x);
+  warnings.add({.kind = "dropped_digits", .message = text, .file = file});
+}
+
 }  // namespace ptin

@@ -63,8 +63,16 @@ double StepCounter::coordinate(std::int64_t steps) const noexcept {
                      : static_cast<double>(steps) / static_cast<double>(power_of_ten(decimals_));
 }
 
-double StepCounter::distance(Decimal value) const noexcept {
-  return std::abs(to_double(value) - coordinate(steps(value)));
+double StepCounter::rest(Decimal value) const noexcept {
+  if (unit_ > 0.0) {
+    return to_double(value) - coordinate(steps(value));
+  }
+  if (value.decimals <= decimals_) {
+    return 0.0;
+  }
+  const std::int64_t rest =
+      value.mantissa - steps(value) * power_of_ten(value.decimals - decimals_);
+  return static_cast<double>(rest) / static_cast<double>(power_of_ten(value.decimals));
 }
 
 int DecimalRange::decimals() const noexcept {
@@ -76,7 +84,38 @@ int DecimalRange::decimals() const noexcept {
   return 0;
 }
 
+int DecimalRange::decimals_rounded_to(int decimals) const noexcept {
+  for (int d = decimals; d > 0; --d) {
+    const auto i = static_cast<std::size_t>(d);
+    if (extremes_[i].low <= extremes_[i].high ||
+        rounded_[static_cast<std::size_t>(decimals)] == i) {
+      return d;
+    }
+  }
+  return 0;
+}
+
+void DecimalRange::round(Decimal d) noexcept {
+  for (int to = 1; to < d.decimals; ++to) {
+    const auto i = static_cast<std::size_t>(to);
+    if ((unsettled_ >> i & 1U) == 0U) {
+      continue;
+    }
+    std::int64_t left = StepCounter(to).steps(d);
+    std::uint32_t decimals = static_cast<std::uint32_t>(to);
+    for (; decimals > 0 && left % 10 == 0; --decimals) {
+      left /= 10;
+    }
+    rounded_[i] = std::max(rounded_[i], decimals);
+    unsettled_ &= decimals == i ? ~(1U << i) : ~0U;
+  }
+}
+
 void DecimalRange::join(const DecimalRange& other) noexcept {
+  for (std::size_t d = 0; d < rounded_.size(); ++d) {
+    rounded_[d] = std::max(rounded_[d], other.rounded_[d]);
+  }
+  unsettled_ &= other.unsettled_;
   for (std::size_t d = 0; d < extremes_.size(); ++d) {
     extremes_[d].low = std::min(extremes_[d].low, other.extremes_[d].low);
     extremes_[d].high = std::max(extremes_[d].high, other.extremes_[d].high);
@@ -224,6 +263,13 @@ void PointGridScan::choose_steps(PointGrid& grid) const {
     grid.x = grid.y = StepCounter(--decimals);
     grid.drops_digits = true;
   }
+  if (grid.drops_digits) {
+    decimals = std::max({std::min(plan_decimals_, decimals), std::min(of_lines, decimals),
+                         extent_.x.decimals_rounded_to(decimals),
+                         extent_.y.decimals_rounded_to(decimals)});
+    grid.x = grid.y = StepCounter(decimals);
+    set_bounds(grid);
+  }
 }
 
 PointGrid PointGridScan::grid() const {
@@ -243,16 +289,18 @@ PointGrid PointGridScan::grid() const {
   return grid;
 }
 
-bool is_wanted(const SourcePoint& p, const SourceOptions& options) noexcept {
+std::optional<LeftOutReason> why_left_out(const SourcePoint& p,
+                                          const SourceOptions& options) noexcept {
   if (options.nodata && to_double(p.z) == *options.nodata) {
-    return false;
+    return LeftOutReason::kNodata;
   }
   if (!options.bbox) {
-    return true;
+    return std::nullopt;
   }
   const double x = to_double(p.x), y = to_double(p.y);
-  return options.bbox->min_x <= x && x <= options.bbox->max_x && options.bbox->min_y <= y &&
-         y <= options.bbox->max_y;
+  const bool is_inside = options.bbox->min_x <= x && x <= options.bbox->max_x &&
+                         options.bbox->min_y <= y && y <= options.bbox->max_y;
+  return is_inside ? std::nullopt : std::optional(LeftOutReason::kBounds);
 }
 
 }  // namespace ptin

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "engine/construct/grid/far_points.h"
+#include "engine/construct/grid/left_out.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/terrain_frame.h"
@@ -34,32 +36,37 @@ class StepCounter {
   [[nodiscard]] double unit() const noexcept;
   /// The coordinate at a number of steps.
   [[nodiscard]] double coordinate(std::int64_t steps) const noexcept;
-  /// How far rounding to a step moves `value`; 0 where steps are counted exactly.
-  [[nodiscard]] double shift(Decimal value) const noexcept {
-    return unit_ > 0.0 || value.decimals > decimals_ ? distance(value) : 0.0;
-  }
+  /// `value` less the coordinate of its step. Where steps are counted exactly it has no error but one
+  /// rounding.
+  [[nodiscard]] double rest(Decimal value) const noexcept;
+  /// How far rounding to a step moves `value`.
+  [[nodiscard]] double shift(Decimal value) const noexcept { return std::abs(rest(value)); }
   [[nodiscard]] bool is_exact() const noexcept { return unit_ == 0.0; }
 
  private:
-  [[nodiscard]] double distance(Decimal value) const noexcept;
   int decimals_ = 0;
   double unit_ = 0.0;  ///< 0: steps are 10^-decimals_, counted exactly.
   double origin_ = 0.0;
 };
 
 /// The smallest and the largest of many decimals, exactly, and the most digits after the point that
-/// one of them has.
+/// one of them has, as it is or rounded.
 class DecimalRange {
  public:
   void add(Decimal d) noexcept {
     Extreme& e = extremes_[static_cast<std::size_t>(d.decimals)];
     e.low = d.mantissa < e.low ? d.mantissa : e.low;
     e.high = d.mantissa > e.high ? d.mantissa : e.high;
+    if ((unsettled_ & ((1U << static_cast<unsigned>(d.decimals)) - 1U)) != 0U) {
+      round(d);
+    }
   }
   /// Adds what another range has seen.
   void join(const DecimalRange& other) noexcept;
   /// The most digits after the point; 0 when nothing was added.
   [[nodiscard]] int decimals() const noexcept;
+  /// The same when each is rounded to at most so many, and loses the zeros at its end then.
+  [[nodiscard]] int decimals_rounded_to(int decimals) const noexcept;
   /// The steps of the smallest decimal; INT64_MAX where none was added.
   [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept;
   /// The steps of the largest decimal; INT64_MIN where none was added.
@@ -69,7 +76,13 @@ class DecimalRange {
   struct Extreme {
     std::int64_t low = INT64_MAX, high = INT64_MIN;
   };
+  void round(Decimal d) noexcept;
   std::array<Extreme, 19> extremes_;  ///< By decimals: only such mantissas can be compared.
+  /// By decimals to round to: the most that stay of those that have more.
+  std::array<std::uint32_t, 19> rounded_{};
+  /// Bit `d`: d decimals are more than rounding to d left so far. Of most sources the first few values
+  /// settle it, so that adding others costs no rounding.
+  std::uint32_t unsettled_ = 0x7fffe;
 };
 
 /// The grid of points, and how their heights are held until the encoding is known.
@@ -162,12 +175,14 @@ class PointGridScan {
   void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return extent_.points; }
   /// Warnings of points that lie far from all others.
-  [[nodiscard]] SourceWarnings warnings() const {
-    return extent_.far.warnings(extent_.points, context_);
+  /// @param are_vertices  They are those of a TIN.
+  [[nodiscard]] SourceWarnings warnings(bool are_vertices = false) const {
+    return extent_.far.warnings(extent_.points, context_, are_vertices);
   }
   /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
   [[nodiscard]] bool lines_are_elsewhere() const noexcept;
-  /// Digits that 2^30 steps do not keep, or doubles do not, are dropped, and so is a lattice.
+  /// Digits that 2^30 steps do not keep, or doubles do not, are dropped, half away from zero, and so is
+  /// a lattice. Digits of computed numbers often leave round ones then, whose steps are longer.
   /// REQUIRES: there are points.
   /// @throws Error invalid_argument  an extent of more than 2^30 steps of the chosen resolution, or of
   ///                                 one unit
@@ -187,8 +202,9 @@ class PointGridScan {
   int most_line_decimals_ = 0;  ///< Of plan coordinates.
 };
 
-/// True when a point is to be built from: its height is not `options.nodata`, and it lies in
-/// `options.bbox`, which is closed.
-[[nodiscard]] bool is_wanted(const SourcePoint& p, const SourceOptions& options) noexcept;
+/// Why a point is not to be built from: its height is `options.nodata`, or it lies outside of
+/// `options.bbox`, which is closed. None where it is.
+[[nodiscard]] std::optional<LeftOutReason> why_left_out(const SourcePoint& p,
+                                                        const SourceOptions& options) noexcept;
 
 }  // namespace ptin

@@ -25,6 +25,7 @@ struct PointChoice {
   /// Text: the names of its columns from the left (read/column_names.h); empty: those of a header,
   /// else x, y and z come first.
   std::vector<std::string> columns;
+  bool skip_invalid = false;  ///< Text: rows that are no points are left out, and warned of.
 };
 
 /// Which lines are wanted beside points.

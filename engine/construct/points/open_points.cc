@@ -22,7 +22,9 @@ constexpr std::size_t kBatchPoints = 4096;
 class TextPoints final : public PointStream {
  public:
   TextPoints(const std::string& path, const PointChoice& choice, const PointPart& part)
-      : is_whole_(part.is_whole()), reader_(path, choice.columns, part) {
+      : path_(path),
+        is_whole_(part.is_whole()),
+        reader_(path, choice.columns, part, choice.skip_invalid) {
     const GdalSession session;
     VSIStatBufL status;
     if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
@@ -44,7 +46,22 @@ class TextPoints final : public PointStream {
     }
     return !batch.empty();
   }
-  [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
+  [[nodiscard]] LeftOutPoints left_out() const noexcept override {
+    LeftOutPoints points;
+    points.add(LeftOutReason::kInvalid, reader_.skipped().rows);
+    return points;
+  }
+  [[nodiscard]] SourceWarnings warnings() const override {
+    SourceWarnings all = warnings_;
+    if (const XyzReader::Skipped& skipped = reader_.skipped(); skipped.rows > 0) {
+      all.add({.kind = "invalid_rows",
+               .message = "a row is no point and was passed over: " + skipped.fault,
+               .file = path_,
+               .line = skipped.line,
+               .count = skipped.rows});
+    }
+    return all;
+  }
   [[nodiscard]] std::optional<RowsOfPart> rows() const override {
     return is_whole_ ? std::nullopt : std::optional(reader_.rows());
   }
@@ -52,6 +69,7 @@ class TextPoints final : public PointStream {
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
  private:
+  std::string path_;
   bool is_whole_;
   /// Warns of what names of columns say in brackets and nobody understands.
   void note_unknown_units(const std::string& path) {
@@ -81,6 +99,10 @@ void check_choice(const std::string& path, const PointChoice& choice, PointForma
   if (!choice.columns.empty() && format != PointFormat::kText) {
     throw Error(ErrorCode::invalid_argument,
                 "--columns is for points as text, not for LAS and layers; leave it out", path);
+  }
+  if (choice.skip_invalid && format != PointFormat::kText) {
+    throw Error(ErrorCode::invalid_argument,
+                "--skip-invalid is for points as text, not for LAS and layers; leave it out", path);
   }
   if (choice.returns != ReturnChoice::kAll &&
       (wants_layer(choice) || format != PointFormat::kLas)) {

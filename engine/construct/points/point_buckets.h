@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/left_out.h"
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_warning.h"
@@ -32,9 +33,9 @@ struct BucketPoint {
 
 /// What happened on the way from the source to the buckets.
 struct PointCounts {
-  std::uint64_t source_points = 0;    ///< Read and not left out.
-  std::uint64_t left_out_points = 0;  ///< By class or place, withheld, or without a height.
-  std::uint64_t merged_points = 0;    ///< source_points less the distinct positions.
+  std::uint64_t source_points = 0;  ///< Read and not left out.
+  LeftOutPoints left_out;
+  std::uint64_t merged_points = 0;  ///< source_points less the distinct positions.
   /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
   /// grid keeps every digit), and in height when it was merged (height's unit).
   double largest_shift_plan = 0.0;

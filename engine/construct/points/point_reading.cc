@@ -56,8 +56,8 @@ RowsOfPart rows_of(const PlainRows& p) {
 /// The plain values of a portion.
 struct PlainRead {
   PointExtent extent;
-  std::uint64_t seen, left_out, sample_step;
-  double largest_shift;
+  LeftOutPoints left_out;
+  std::uint64_t sample_step;
   SourceLattice lattice;
   PlainRows rows;
   std::int32_t plan_decimals, height_decimals;
@@ -102,10 +102,8 @@ void EvenSample::add(const SourcePoint& p) {
 void put(ArrayFileWriter& file, const PortionRead& read) {
   const PointStreamFacts& source = read.source;
   const PlainRead plain{read.extent,
-                        read.seen,
                         read.left_out,
                         read.sample_step,
-                        read.largest_shift,
                         source.lattice.value_or(SourceLattice{}),
                         plain_of(read.rows.value_or(RowsOfPart{})),
                         source.plan_decimals,
@@ -125,10 +123,8 @@ PortionRead take_portion_read(ArrayFileReader& file) {
   const PlainRead plain = file.take<PlainRead>()[0];
   PortionRead read;
   read.extent = plain.extent;
-  read.seen = plain.seen;
   read.left_out = plain.left_out;
   read.sample_step = plain.sample_step;
-  read.largest_shift = plain.largest_shift;
   read.rows = plain.has_rows != 0 ? std::optional(rows_of(plain.rows)) : std::nullopt;
   read.source.plan_decimals = plain.plan_decimals;
   read.source.height_decimals = plain.height_decimals;
@@ -173,17 +169,17 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   while (stream->next(batch)) {
     stop_if_asked(task.stop, "reading", path);
     progress(stream->done(), stream->total());
-    result.seen += batch.size();
     for (const SourcePoint& p : batch) {
-      if (is_wanted(p, options_)) {
-        result.extent.add(p);
-        sample.add(p);
-        writer.add(p);
+      if (const auto reason = why_left_out(p, options_)) {
+        result.left_out.add(*reason);
+        continue;
       }
+      result.extent.add(p);
+      sample.add(p);
+      writer.add(p);
     }
   }
-  result.left_out = stream->left_out();
-  result.largest_shift = stream->largest_shift();
+  result.left_out.join(stream->left_out());
   result.rows = stream->rows();
   result.warnings = stream->warnings();
   writer.finish();
@@ -211,6 +207,10 @@ namespace {
 class WholeTexts {
  public:
   explicit WholeTexts(const std::vector<std::string>& inputs) : inputs_(inputs) {}
+  /// The lines of this input that were added so far.
+  [[nodiscard]] std::uint64_t lines_of(std::size_t input) const noexcept {
+    return input == input_ ? all_.lines : 0;
+  }
   void add(std::size_t input, const RowsOfPart& part) {
     if (input != input_) {
       check();
@@ -275,12 +275,15 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
   }
 }
 
-/// The warnings but for those of a CRS in whose place the caller puts another one.
-SourceWarnings that_count(const SourceWarnings& all, const SourceOptions& options) {
+/// The warnings of a portion but for those of a CRS in whose place the caller puts another one.
+/// @param lines_before  So many lines of its input come before it.
+SourceWarnings that_count(const SourceWarnings& all, const SourceOptions& options,
+                          std::uint64_t lines_before) {
   SourceWarnings some;
-  for (const SourceWarning& w : all.all()) {
+  for (SourceWarning w : all.all()) {
     if (options.a_srs.empty() || !w.kind.starts_with("crs_")) {
-      some.add(w);
+      w.line += w.line > 0 ? lines_before : 0;
+      some.add(std::move(w));
     }
   }
   return some;
@@ -301,7 +304,6 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
   PointReading reading{.scan = PointGridScan(options.resolution, context)};
   SourceAgreement agreement(options);
   WholeTexts texts(inputs);
-  std::uint64_t seen = 0;
   std::vector<std::uint64_t> points_of(inputs.size());
   const std::size_t sample_step = portions.size() * EvenSample::kMost / kMostSamples + 1;
   for (std::size_t i = 0; i < portions.size(); ++i) {
@@ -312,15 +314,14 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
       agreement.add(read.source, inputs[p.portion.input]);
       reading.scan.add_source(read.source);
     }
+    const std::uint64_t lines_before = texts.lines_of(p.portion.input);
     if (read.rows) {
       texts.add(p.portion.input, *read.rows);
     }
-    points_of[p.portion.input] += read.seen + read.left_out;
+    points_of[p.portion.input] += read.extent.points + read.left_out.total();
     reading.scan.add(read.extent);
-    seen += read.seen;
-    reading.left_out += read.left_out;
-    reading.warnings.join(that_count(read.warnings, options));
-    reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
+    reading.left_out.join(read.left_out);
+    reading.warnings.join(that_count(read.warnings, options, lines_before));
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points});
     }
@@ -328,7 +329,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
   }
   texts.check();
   if (reading.scan.points() == 0) {
-    refuse(seen + reading.left_out == 0
+    refuse(reading.left_out.total() == 0
                ? "there is no point in this file"
                : "every point is left out: none lies in the bounds, with a height and of a chosen "
                  "class",
@@ -339,7 +340,6 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
       reading.empty_inputs.push_back(i);
     }
   }
-  reading.left_out += seen - reading.scan.points();
   reading.crs = agreement.crs();
   reading.vertical_crs = options.vertical_crs.empty() ? agreement.vertical_crs() : "";
   reading.units = agreement.units();

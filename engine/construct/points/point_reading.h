@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/left_out.h"
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
@@ -47,10 +48,8 @@ class EvenSample {
 /// What one portion is, when it has been read.
 struct PortionRead {
   PointStreamFacts source;
-  PointExtent extent;          ///< Of the wanted points.
-  std::uint64_t seen = 0;      ///< Points that the stream handed out.
-  std::uint64_t left_out = 0;  ///< As PointStream::left_out().
-  double largest_shift = 0.0;  ///< As PointStream::largest_shift().
+  PointExtent extent;        ///< Of the wanted points.
+  LeftOutPoints left_out{};  ///< By the stream, or since they are not wanted.
   std::optional<RowsOfPart> rows;
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
@@ -108,8 +107,7 @@ struct PointReading {
   DeclaredUnits units{};       ///< Those of all files.
   std::string crs_path{};      ///< The file that declared these first.
   PointGridScan scan;          ///< Of all points and files.
-  double largest_shift = 0.0;  ///< The largest PointStream::largest_shift(), CRS units.
-  std::uint64_t left_out = 0;
+  LeftOutPoints left_out{};
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
   SourceWarnings warnings{};                  ///< Warnings of all portions.
   struct Spool {

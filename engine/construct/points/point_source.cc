@@ -159,7 +159,7 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   require_longitudes(index.frame, grid.east - grid.west, grid.is_split, context);
   index.warnings.join(reading_->scan.warnings());
   index.counts.source_points = reading_->scan.points();
-  index.counts.left_out_points = reading_->left_out;
+  index.counts.left_out = reading_->left_out;
   index.empty_inputs = reading_->empty_inputs;
   if (are_axes_exchanged(index.frame, grid.east - grid.west, grid.north - grid.south)) {
     index.warnings.add(
@@ -219,17 +219,21 @@ PointBuckets PointSource::sort_once(const std::string& buckets, bool is_last) {
   auto plan = std::make_shared<SortPlan>(plan_sorting(*reading_, grid, std::move(lines.edges),
                                                       options_.merge, buckets, work_.sorting));
   index.bucket_points = plan->bucket_points;
-  index.counts.largest_shift_plan = lines.largest_shift_plan;
   const std::vector<std::string> shares = run(tasks_.sharing(plan), false);
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const ShareCounts counts = counts_of_share(work_.files, i, PointTasks::facts_in(shares[i]));
     index.counts.source_points -= counts.left_out;
-    index.counts.left_out_points += counts.left_out;
+    index.counts.left_out.add(LeftOutReason::kBoundary, counts.left_out);
     index.counts.largest_shift_plan =
         std::max(index.counts.largest_shift_plan, counts.largest_shift_plan);
   }
   index.counts.source_points += plan->fixed.vertices().size();
-  index.counts.largest_shift_plan += reading_->largest_shift;
+  if (!options_.resolution) {
+    warn_of_shift(index.counts.largest_shift_plan, index.frame, inputs_.empty() ? "" : inputs_[0],
+                  index.warnings);
+  }
+  index.counts.largest_shift_plan =
+      std::max(index.counts.largest_shift_plan, lines.largest_shift_plan);
   if (is_last) {
     work_.files.remove_all("spool");
   }

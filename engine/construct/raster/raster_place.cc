@@ -90,8 +90,8 @@ OGRAxisOrientation orientation_of(const OGRSpatialReference& srs, int axis) {
   return orientation;
 }
 
-/// Looks at the axes of a CRS that x and y of the raster run along.
-void check_axes(const OGRSpatialReference& srs, const std::string& path, SourceWarnings& warnings) {
+/// Refuses a CRS along whose axes x and y of the raster do not run in this order.
+void check_axes(const OGRSpatialReference& srs, const std::string& path) {
   const std::vector<int>& mapping = srs.GetDataAxisToSRSAxisMapping();
   if (mapping.size() < 2 || srs.IsLocal() != 0) {
     return;
@@ -109,15 +109,6 @@ void check_axes(const OGRSpatialReference& srs, const std::string& path, SourceW
         "it declares; bring x before y with 'gdalwarp', or state the CRS with 'gdal_edit.py "
         "-a_srs'",
         path);
-  }
-  if (x == OAO_West || (y == OAO_South && is_of_x(x))) {
-    warnings.add(
-        {"axis_direction",
-         "the axes of the CRS point " + std::string(x == OAO_West ? "west" : "east") + " and " +
-             (y == OAO_South ? "south" : "north") +
-             ", and x is taken to grow to the east and y to the north, so the terrain may be "
-             "turned or mirrored; warp it to another CRS with 'gdalwarp' first",
-         path});
   }
 }
 
@@ -153,7 +144,7 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   }
   if (has_crs) {
     shape.crs = wkt_of(*srs);
-    check_axes(*srs, path, warnings);
+    check_axes(*srs, path);
     warn_of_epoch(*srs, path, warnings);
   }
 }

@@ -71,11 +71,7 @@ void RasterSource::Impl::frame_mosaic(const std::string& path, const SourceOptio
   raw = first.raw;
   scale = first.scale;
   offset = first.offset;
-  try {
-    set_crs(frame, resolve_crs(first.crs, options.a_srs, options.vertical_crs));
-  } catch (const Error& e) {
-    throw e.context().empty() ? Error(e.code(), e.message(), path) : e;
-  }
+  set_crs(frame, resolve_source_crs({first.crs, ""}, options, path, warnings));
   take_unit(mosaic.unit(), path);
   frame.map = mosaic.map();
   require_resolvable(frame.map, mosaic.width() - 1, mosaic.height() - 1,

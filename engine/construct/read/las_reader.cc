@@ -215,16 +215,17 @@ bool LasReader::is_wanted_return(const unsigned char* record) const {
   return number == 0 || number >= count;
 }
 
-/// True when a point is not withheld, and of a class and a return that are kept. Formats 0 to 5
+/// Why a point is left out: it is withheld, or of a class or a return that is not kept. Formats 0 to 5
 /// hold flags and class in one byte, formats 6 to 10 in two.
-bool LasReader::wanted(const unsigned char* record) const {
-  if (!is_wanted_return(record)) {
-    return false;
+std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) const {
+  const bool is_old = header_.point_format < 6;
+  if ((record[15] & (is_old ? 0x80 : 0x04)) != 0) {
+    return LeftOutReason::kWithheld;
   }
-  if (header_.point_format < 6) {
-    return (record[15] & 0x80) == 0 && classes_.test(record[15] & 0x1f);
+  if (!classes_.test(is_old ? record[15] & 0x1f : record[16])) {
+    return LeftOutReason::kClass;
   }
-  return (record[15] & 0x04) == 0 && classes_.test(record[16]);
+  return is_wanted_return(record) ? std::nullopt : std::optional(LeftOutReason::kReturn);
 }
 
 bool LasReader::next(std::vector<SourcePoint>& batch) {
@@ -236,8 +237,8 @@ bool LasReader::next(std::vector<SourcePoint>& batch) {
     file_->read(header_.first_point + read_ * header_.record_bytes, buffer_);
     for (std::uint64_t i = 0; i < count; ++i) {
       const unsigned char* record = buffer_.data() + i * header_.record_bytes;
-      if (!wanted(record)) {
-        ++left_out_;
+      if (const auto reason = why_unwanted(record)) {
+        left_out_.add(*reason);
         continue;
       }
       look_at(record);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,7 +63,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] const LasHeader& header() const noexcept { return header_; }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
-  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] LeftOutPoints left_out() const noexcept override { return left_out_; }
   [[nodiscard]] SourceWarnings warnings() const override;
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_ - begin_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
@@ -88,7 +89,7 @@ class LasReader final : public PointStream {
   void check_counts();
   void look_at(const unsigned char* record);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
-  [[nodiscard]] bool wanted(const unsigned char* record) const;
+  [[nodiscard]] std::optional<LeftOutReason> why_unwanted(const unsigned char* record) const;
 
   std::string path_;
   std::unique_ptr<File> file_;
@@ -101,7 +102,7 @@ class LasReader final : public PointStream {
   std::vector<unsigned char> buffer_;
   std::uint64_t begin_ = 0, end_ = 0;  ///< The records of the part.
   std::uint64_t read_ = 0;             ///< The next record.
-  std::uint64_t left_out_ = 0;
+  LeftOutPoints left_out_;
   bool has_box_ = false, names_classes_ = false;
   /// Steps of the header's box, one more on each side.
   std::array<double, 3> low_{}, high_{};

@@ -161,7 +161,7 @@ Decimal OgrPoints::number(double value, const char* role) const {
 void OgrPoints::add_point(const void* any, double field_height, std::vector<SourcePoint>& batch) {
   const auto& point = *static_cast<const OGRPoint*>(any);
   if (point.IsEmpty() != 0) {
-    ++left_out_;
+    left_out_.add(LeftOutReason::kNoHeight);
     return;
   }
   if (layer_->z_field < 0 && point.Is3D() == 0) {
@@ -171,7 +171,7 @@ void OgrPoints::add_point(const void* any, double field_height, std::vector<Sour
   }
   const double height = layer_->z_field < 0 ? point.getZ() : field_height;
   if (height < kLeastHeight && std::isfinite(height)) {
-    ++left_out_;
+    left_out_.add(LeftOutReason::kNoHeight);
     return;
   }
   batch.push_back({number(point.getX(), "x"), number(point.getY(), "y"), number(height, "height")});
@@ -215,7 +215,7 @@ void OgrPoints::add_feature(void* any, std::vector<SourcePoint>& batch) {
   const OGRGeometry* geometry = feature.GetGeometryRef();
   if (geometry == nullptr || geometry->IsEmpty() != 0 ||
       (layer_->z_field >= 0 && feature.IsFieldSetAndNotNull(layer_->z_field) == 0)) {
-    ++left_out_;
+    left_out_.add(LeftOutReason::kNoHeight);
     return;
   }
   note_altitude_mode(&feature);

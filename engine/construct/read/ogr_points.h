@@ -32,7 +32,7 @@ class OgrPoints final : public PointStream {
 
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
-  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] LeftOutPoints left_out() const noexcept override { return left_out_; }
   [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
@@ -53,7 +53,8 @@ class OgrPoints final : public PointStream {
   std::unique_ptr<Layer> layer_;
   PointStreamFacts facts_;
   std::int64_t feature_ = 0;  ///< Number of the feature that was read last, for errors.
-  std::uint64_t read_ = 0, total_ = 0, left_out_ = 0;
+  std::uint64_t read_ = 0, total_ = 0;
+  LeftOutPoints left_out_;
   SourceWarnings warnings_;
 };
 

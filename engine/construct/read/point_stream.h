@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/left_out.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/point_part.h"
@@ -46,10 +47,7 @@ class PointStream {
 
   /// Points left out so far: by the PointChoice, or by the file itself, which marks them as
   /// withheld or gives them no height.
-  [[nodiscard]] virtual std::uint64_t left_out() const noexcept { return 0; }
-  /// The farthest that a point has been moved in plan so far, because the stream dropped digits
-  /// that no grid keeps; CRS units.
-  [[nodiscard]] virtual double largest_shift() const noexcept { return 0.0; }
+  [[nodiscard]] virtual LeftOutPoints left_out() const noexcept { return {}; }
   /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
   /// points. Other streams have nothing to tell.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }

@@ -247,6 +247,9 @@ bool TextRows::next() {
     return false;
   }
   fields_ = table_.fields();
+  if (table_.is_misfit()) {
+    return true;
+  }
   if (numbering_.may_be) {
     note_numbering();
   }
@@ -254,18 +257,25 @@ bool TextRows::next() {
   return true;
 }
 
-void TextRows::refuse_field(std::size_t role, const std::string& what) const {
-  table_.refuse("the " + name_of(roles_[role]) +
-                (roles_[role].end == 0 ? " of this point, " : " of this pair, ") +
-                shown_field(field(role)) + ", " + what);
+std::string TextRows::fault_of_field(std::size_t role, const std::string& what) const {
+  return "the " + name_of(roles_[role]) +
+         (roles_[role].end == 0 ? " of this point, " : " of this pair, ") +
+         shown_field(field(role)) + ", " + what;
 }
 
-void TextRows::refuse_no_number(std::size_t role) const {
-  refuse_field(role, why_no_number(field(role)) +
-                         (numbering_.is_guess
-                              ? "; if the columns are others, name them with --columns, as in " +
-                                    example_of(roles_)
-                              : ""));
+std::string TextRows::fault_of_no_number(std::size_t role) const {
+  return fault_of_field(
+      role,
+      why_no_number(field(role)) +
+          (numbering_.is_guess ? "; if the columns are others, name them with --columns, as in " +
+                                     example_of(roles_)
+                               : ""));
 }
+
+void TextRows::refuse_field(std::size_t role, const std::string& what) const {
+  table_.refuse(fault_of_field(role, what));
+}
+
+void TextRows::refuse_no_number(std::size_t role) const { table_.refuse(fault_of_no_number(role)); }
 
 }  // namespace ptin

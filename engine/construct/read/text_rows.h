@@ -50,7 +50,8 @@ class TextRows {
   /// @throws Error as next()
   [[nodiscard]] std::string unknown_unit();
 
-  /// Reads the next row; false at the end.
+  /// Reads the next row; false at the end. A row that misfits (TextTable::misfit()) counts for nothing,
+  /// and has no fields.
   /// @throws Error as TextTable::next(); invalid_argument also where a header lacks a column, where
   ///         names it twice, there are too few, and, at the end of a whole text, where nobody said
   ///         which columns these are and the one taken for the first coordinate numbers the rows
@@ -65,7 +66,11 @@ class TextRows {
   [[nodiscard]] std::string_view field(std::size_t role) const { return fields_[columns_[role]]; }
   /// The field that tells the row apart. REQUIRES: choose_id() returned true.
   [[nodiscard]] std::string_view id() const { return fields_[id_]; }
-  /// Refuses the row for what is wrong with the field of a role: "the x of this point " and `what`.
+  /// What is wrong with the field of a role: "the x of this point, 'nan', " and `what`.
+  [[nodiscard]] std::string fault_of_field(std::size_t role, const std::string& what) const;
+  /// That it is no number.
+  [[nodiscard]] std::string fault_of_no_number(std::size_t role) const;
+  /// Refuses the row for what is wrong with the field of a role.
   [[noreturn]] void refuse_field(std::size_t role, const std::string& what) const;
   /// Refuses the row since the field of a role is no number.
   [[noreturn]] void refuse_no_number(std::size_t role) const;

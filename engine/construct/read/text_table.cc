@@ -426,14 +426,23 @@ bool TextTable::next() {
   if (!next_row()) {
     return false;
   }
-  if (fields_.size() != field_count_ && !goes_on_in_last()) {
-    refuse("there are " + std::to_string(fields_.size()) + " fields where the first line has " +
-           std::to_string(field_count_) +
-           (separator_ == ',' && fields_.size() > field_count_
-                ? "; numbers have a decimal point, no comma"
-                : ""));
+  if (!may_misfit_ && is_misfit()) {
+    refuse(misfit());
   }
   return true;
+}
+
+bool TextTable::is_misfit() const { return fields_.size() != field_count_ && !goes_on_in_last(); }
+
+std::string TextTable::misfit() const {
+  if (!is_misfit()) {
+    return {};
+  }
+  return "there are " + std::to_string(fields_.size()) + " fields where the first line has " +
+         std::to_string(field_count_) +
+         (separator_ == ',' && fields_.size() > field_count_
+              ? "; numbers have a decimal point, no comma"
+              : "");
 }
 
 std::string shown_field(std::string_view field) {

@@ -65,8 +65,14 @@ class TextTable {
   /// on in it, as a comma in a description does, where that column begins with no number.
   void let_last_go_on() noexcept { may_last_go_on_ = true; }
 
+  /// From here on next() hands out rows that have another number of fields than the first one, too.
+  void let_rows_misfit() noexcept { may_misfit_ = true; }
+  /// What is wrong with the number of fields of the row that was read last; "" for nothing.
+  [[nodiscard]] std::string misfit() const;
+  [[nodiscard]] bool is_misfit() const;
+
   /// Reads the next row below the header; false at the end.
-  /// @throws Error  invalid_argument  a row has another number of fields; the text is UTF-16 or
+  /// @throws Error  invalid_argument  a row has another number of fields, and may not; the text is UTF-16 or
   ///                                  UTF-32; a quoted field does not end, or goes on behind its end; a row is longer than 64 KiB.
   ///                                  The context is "path:line".
   ///                io_error          the text cannot be read on, or is damaged (.gz)
@@ -132,7 +138,7 @@ class TextTable {
   std::vector<std::string> header_;
   std::vector<std::string> comments_;  ///< Before the first row, until it was read.
   bool is_told_by_comment_ = false;
-  bool may_last_go_on_ = false;
+  bool may_last_go_on_ = false, may_misfit_ = false;
   std::vector<std::string_view> fields_;
   std::string unquoted_;  ///< What quoted fields of the row hold.
 };

@@ -159,7 +159,9 @@ bool TinReceiver::follow_comment(std::string_view comment) {
     facts_.vertical_crs = value;
   } else if (equal_in_any_case(key, "units") || equal_in_any_case(key, "unit")) {
     const std::string unit = height_unit_named(value);
-    facts_.units = {unit, unit};
+    facts_.units = {unit, facts_.units.heights.empty() ? unit : facts_.units.heights};
+  } else if (equal_in_any_case(key, "height_units") || equal_in_any_case(key, "height_unit")) {
+    facts_.units.heights = height_unit_named(value);
   } else {
     return false;
   }

@@ -64,8 +64,8 @@ class TinReceiver {
   void warn(SourceWarning warning) { facts_.warnings.add(std::move(warning)); }
   void set_units(DeclaredUnits units) { facts_.units = std::move(units); }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
-  /// Takes what a comment declares, as "crs: EPSG:25832", "vertical_crs: ..." and "units: m". Warns
-  /// of one that tells of a CRS, or of a shift or scale of coordinates, in other words.
+  /// Takes what a comment declares, as "crs: EPSG:25832", "vertical_crs: ...", "units: m" and
+  /// "height_units: ft". Warns of one that tells of a CRS, or of a shift or scale of coordinates, in other words.
   void note_comment(std::string_view comment);
   /// To be called at the end of the file.
   /// @throws Error invalid_argument  there was no vertex, or no triangle

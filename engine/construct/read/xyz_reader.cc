@@ -5,35 +5,62 @@
 
 namespace ptin {
 
-XyzReader::XyzReader(std::string path, std::vector<std::string> columns, const PointPart& part)
-    : table_(std::move(path), part), rows_(table_, point_roles(), std::move(columns)) {}
+XyzReader::XyzReader(std::string path, std::vector<std::string> columns, const PointPart& part,
+                     bool skips_invalid)
+    : table_(std::move(path), part),
+      rows_(table_, point_roles(), std::move(columns)),
+      skips_invalid_(skips_invalid) {
+  table_.let_rows_misfit();
+}
 
 XyzReader::XyzReader(std::string name, std::string text, std::vector<std::string> columns)
-    : table_(std::move(name), std::move(text)), rows_(table_, point_roles(), std::move(columns)) {}
+    : table_(std::move(name), std::move(text)), rows_(table_, point_roles(), std::move(columns)) {
+  table_.let_rows_misfit();
+}
 
-Decimal XyzReader::number(std::size_t role) const {
-  Decimal value;
-  switch (parse_number(rows_.field(role), value)) {
-    case NumberKind::kNumber:
-      return value;
+bool XyzReader::is_number(std::size_t role, Decimal& value) const {
+  return parse_number(rows_.field(role), value) == NumberKind::kNumber;
+}
+
+/// What is wrong with the row that was read last. REQUIRES: something is.
+std::string XyzReader::fault() const {
+  if (table_.is_misfit()) {
+    return table_.misfit();
+  }
+  Decimal ignored;
+  std::size_t role = 0;
+  while (is_number(role, ignored)) {
+    ++role;
+  }
+  switch (parse_number(rows_.field(role), ignored)) {
     case NumberKind::kNotANumber:
-      rows_.refuse_field(role, "is NaN; leave points without a height out");
+      return rows_.fault_of_field(role, "is NaN; leave points without a height out");
     case NumberKind::kInfinite:
-      rows_.refuse_field(role, "is infinite");
+      return rows_.fault_of_field(role, "is infinite");
     case NumberKind::kTooLarge:
-      rows_.refuse_field(role, "is 10^18 or more");
+      return rows_.fault_of_field(role, "is 10^18 or more");
+    case NumberKind::kNumber:
     case NumberKind::kNoNumber:
       break;
   }
-  rows_.refuse_no_number(role);
+  return rows_.fault_of_no_number(role);
 }
 
 bool XyzReader::next(XyzPoint& point) {
-  if (!rows_.next()) {
-    return false;
+  while (rows_.next()) {
+    if (!table_.is_misfit() && is_number(0, point.x) && is_number(1, point.y) &&
+        is_number(2, point.z)) {
+      return true;
+    }
+    if (!skips_invalid_) {
+      table_.refuse(fault() + "; --skip-invalid passes over such rows");
+    }
+    if (skipped_.rows++ == 0) {
+      skipped_.line = table_.line();
+      skipped_.fault = fault();
+    }
   }
-  point = {number(0), number(1), number(2)};
-  return true;
+  return false;
 }
 
 }  // namespace ptin

@@ -24,8 +24,9 @@ class XyzReader {
   ///                 a header.
   /// @throws Error as TextTable; invalid_argument  `columns` lacks a coordinate
   /// @param part     As of TextTable.
+  /// @param skips_invalid  Rows that are no points are passed over.
   explicit XyzReader(std::string path, std::vector<std::string> columns = {},
-                     const PointPart& part = {});
+                     const PointPart& part = {}, bool skips_invalid = false);
   /// Reads `text`, which it keeps, instead of a file; `name` stands for the path in errors.
   XyzReader(std::string name, std::string text, std::vector<std::string> columns = {});
 
@@ -39,6 +40,14 @@ class XyzReader {
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
+  /// The rows that were passed over, and what is wrong with the first of them, at its line.
+  struct Skipped {
+    std::uint64_t rows = 0;
+    std::uint64_t line = 0;
+    std::string fault;
+  };
+  [[nodiscard]] const Skipped& skipped() const noexcept { return skipped_; }
+
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
   /// What the rows tell that were read.
@@ -50,10 +59,13 @@ class XyzReader {
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return table_.bytes_read(); }
 
  private:
-  [[nodiscard]] Decimal number(std::size_t role) const;
+  [[nodiscard]] bool is_number(std::size_t role, Decimal& value) const;
+  [[nodiscard]] std::string fault() const;
 
   TextTable table_;
   TextRows rows_;
+  bool skips_invalid_ = false;
+  Skipped skipped_;
 };
 
 }  // namespace ptin

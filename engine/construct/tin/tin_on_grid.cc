@@ -10,7 +10,6 @@
 #include "engine/construct/grid/point_order.h"
 #include "engine/construct/grid/point_sorter.h"
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/tin/tin_digits.h"
 #include "engine/construct/tin/tin_names.h"
 #include "engine/geometry/orient.h"
 
@@ -160,7 +159,6 @@ class GridReader {
   const TinGridReading& reading_;
   ExternalMemory memory_;
   TinOnGrid tin_;
-  int decimals_ = 0;
   std::optional<PointOrder> order_;
   std::optional<NamedTin> named_;
   std::unique_ptr<CornerSorter> corners_;
@@ -168,34 +166,21 @@ class GridReader {
 };
 
 void GridReader::choose_grid() {
-  TinDigits digits;
-  named_->vertices.visit([&](const NamedVertex& v) { digits.add(v.point()); }, reading_.stop);
-  decimals_ = digits.kept();
   PointGridScan scan(reading_.options.resolution, path_);
   scan.add_source({});
-  named_->vertices.visit(
-      [&](const NamedVertex& v) {
-        SourcePoint p = v.point();
-        static_cast<void>(drop_digits(p, decimals_));
-        scan.add(p);
-      },
-      reading_.stop);
+  named_->vertices.visit([&](const NamedVertex& v) { scan.add(v.point()); }, reading_.stop);
   tin_.grid = scan.grid();
+  tin_.warnings.join(scan.warnings(true));
   order_.emplace(tin_.grid.largest());
 }
 
 JoinedCorner GridReader::snapped(const NamedVertex& v) {
   const PointGrid& grid = tin_.grid;
   const AffineMap map = grid.map();
-  SourcePoint p = v.point();
-  const DroppedDigits dropped = drop_digits(p, decimals_);
+  const SourcePoint p = v.point();
   JoinedCorner corner;
   corner.vertex = {grid.position(p), grid.height(p.z)};
-  double x = dropped.x, y = dropped.y;
-  if (!grid.x.is_exact()) {
-    x += to_double(p.x) - grid.x.coordinate(grid.west + corner.vertex.position.x);
-    y += to_double(p.y) - grid.y.coordinate(grid.south + corner.vertex.position.y);
-  }
+  const double x = grid.x.rest(p.x), y = grid.y.rest(p.y);
   corner.off_x = static_cast<float>(x / map.step_x);
   corner.off_y = static_cast<float>(y / map.step_y);
   tin_.largest_shift_plan = std::max(tin_.largest_shift_plan, std::sqrt(x * x + y * y));

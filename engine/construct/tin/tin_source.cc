@@ -212,6 +212,9 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
                      "give a coarser --resolution", path);
   require_latitudes(to.frame_, tin.grid.north - tin.grid.south, path);
   require_longitudes(to.frame_, tin.grid.east - tin.grid.west, tin.grid.is_split, path);
+  if (!options.resolution) {
+    warn_of_shift(tin.largest_shift_plan, to.frame_, path, tin.warnings);
+  }
   set_heights(to.frame_, tin.heights);
   to.codes_are_whole_ = tin.grid.whole;
   to.warnings_ = std::move(tin.warnings);

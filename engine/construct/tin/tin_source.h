@@ -39,11 +39,8 @@ struct TinCounts {
 
 /// The full TIN of a file of triangles, on disk.
 ///
-/// The grid is chosen as that of points (points/point_buckets.h), with one difference: digits for
-/// which the grid has no room are dropped, since programs write TINs with all digits of a double.
-/// Without a resolution the unit is the power of ten that keeps every digit; where the TIN would
-/// span more than 2^30 of these, it is the smallest power of ten with which the TIN does not.
-/// largest_shift_plan says how far that moved vertices. Vertices that share a position and a height
+/// The grid is chosen as that of points (points/point_source.h): digits for which it has no room are
+/// dropped, and largest_shift_plan says how far that moved vertices. Vertices that share a position and a height
 /// are one. Slivers that snapping flattens or turns over are flipped away (tin/sliver_flips.h).
 /// Concave borders and holes are filled with void triangles up to the convex hull.
 ///

@@ -2,13 +2,11 @@
 #include "engine/construct/tin/tin_vertices.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/scratch/record_file.h"
-#include "engine/construct/tin/tin_digits.h"
 #include "engine/construct/tin/tin_names.h"
 #include "storage/file/file_questions.h"
 
@@ -51,11 +49,8 @@ TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
   facts_.vertical_crs = tin.facts.vertical_crs;
   facts_.units = tin.facts.units;
   warnings_ = tin.facts.warnings;
-  left_out_ = tin.unused_vertices;
+  left_out_.add(LeftOutReason::kNoTriangle, tin.unused_vertices);
   vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
-  TinDigits digits;
-  vertices_->records.visit([&](const NamedVertex& v) { digits.add(v.point()); }, resources.stop);
-  decimals_ = digits.kept();
 }
 
 TinVertices::~TinVertices() = default;
@@ -70,8 +65,6 @@ bool TinVertices::next(std::vector<SourcePoint>& batch) {
   batch.clear();
   for (const NamedVertex& v : vertices) {
     batch.push_back(v.point());
-    const DroppedDigits moved = drop_digits(batch.back(), decimals_);
-    largest_shift_ = std::max(largest_shift_, std::sqrt(moved.x * moved.x + moved.y * moved.y));
   }
   return !batch.empty();
 }

@@ -15,9 +15,8 @@
 
 namespace ptin {
 
-/// A stream of the vertices that a TIN's triangles name, in the order of their ids, rounded to the
-/// digits that TinTriangles keeps. TINs may be of any size: vertices and triangles are matched by
-/// sorting on disk.
+/// A stream of the vertices that a TIN's triangles name, in the order of their ids. TINs may be of any
+/// size: vertices and triangles are matched by sorting on disk.
 class TinVertices final : public PointStream {
  public:
   /// Reads the file once.
@@ -40,8 +39,7 @@ class TinVertices final : public PointStream {
 
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
-  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
-  [[nodiscard]] double largest_shift() const noexcept override { return largest_shift_; }
+  [[nodiscard]] LeftOutPoints left_out() const noexcept override { return left_out_; }
   [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return next_; }
   [[nodiscard]] std::uint64_t total() const noexcept override;
@@ -50,10 +48,8 @@ class TinVertices final : public PointStream {
   class Vertices;  ///< On disk.
   PointStreamFacts facts_;
   std::unique_ptr<const Vertices> vertices_;
-  int decimals_ = 0;
-  double largest_shift_ = 0.0;
   std::uint64_t next_ = 0;
-  std::uint64_t left_out_ = 0;
+  LeftOutPoints left_out_;
   SourceWarnings warnings_;
 };
 

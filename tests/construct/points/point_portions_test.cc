@@ -95,13 +95,17 @@ std::string told_of(const std::vector<std::string>& paths, std::uint64_t text_by
     std::vector<BucketPoint> points;
     buckets.take(0, buckets.size(), points);
     std::string told = std::to_string(buckets.counts().source_points) + "/" +
-                       std::to_string(buckets.counts().left_out_points);
+                       std::to_string(buckets.counts().left_out.total());
     for (const BucketPoint& p : points) {
       told += " " + std::to_string(p.position.x) + "," + std::to_string(p.position.y) + "," +
               std::to_string(p.height);
     }
     for (const std::uint64_t input : buckets.empty_inputs()) {
       told += " empty " + std::to_string(input);
+    }
+    for (const SourceWarning& w : buckets.warnings().all()) {
+      told += " " + w.kind + " at " + std::to_string(w.line) + ", " + std::to_string(w.count) +
+              " of " + w.message;
     }
     return told;
   } catch (const Error& e) {
@@ -126,6 +130,21 @@ TEST(PointPortions, OfAnySizeMakeTheSame) {
       ASSERT_EQ(told_of({file.path()}, bytes, 1), whole) << bytes << " bytes";
     }
   }
+}
+
+TEST(PointPortions, TellTheSameRowsThatAreNoPoints) {
+  const std::string text =
+      "0 0 1\n\n5 0 2\n# a\n0 5 nan\n0 5 3\n7 7\n5 5 bad\n9 9 1 4\n1e20 1 1\n5 5 4";
+  const MemoryFile file("portions.xyz", text);
+  SourceOptions options;
+  options.points.skip_invalid = true;
+  const std::string whole = told_of({file.path()}, 1 << 20, 1, options);
+  EXPECT_TRUE(whole.starts_with("4/5 ")) << whole;
+  EXPECT_NE(whole.find("invalid_rows at 5, 5 of "), std::string::npos) << whole;
+  for (std::uint64_t bytes = 1; bytes <= text.size(); ++bytes) {
+    ASSERT_EQ(told_of({file.path()}, bytes, 1, options), whole) << bytes << " bytes";
+  }
+  EXPECT_NE(told_of({file.path()}, 1 << 20, 1).find("--skip-invalid"), std::string::npos);
 }
 
 TEST(PointPortions, OfLasMakeTheSame) {

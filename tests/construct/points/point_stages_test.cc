@@ -142,7 +142,7 @@ Written sorted_by(const RunStage& run, const std::vector<std::string>& paths,
   work.sorting = small_sorting();
   PointSource source(paths, options, work);
   const PointBuckets buckets = source.sort(folder.file("buckets"), true);
-  EXPECT_EQ(buckets.counts().source_points + buckets.counts().left_out_points, 20'000U);
+  EXPECT_EQ(buckets.counts().source_points + buckets.counts().left_out.total(), 20'000U);
   std::ignore = buckets.save(FileLayer::system(), folder.file("index"));
   Written written = written_in(folder);
   EXPECT_GT(written.size(), 3U);
@@ -242,8 +242,8 @@ TEST(PointStages, AddLinesAndKeepWhatTheBoundaryHolds) {
       }));
   const PointBuckets coarse = read_buckets({file.path()}, options);
   const PointBuckets fine = read_buckets({file.path()}, options, 0, small_sorting());
-  EXPECT_EQ(fine.counts().left_out_points, points.size() - inside);
-  EXPECT_EQ(fine.counts().left_out_points, coarse.counts().left_out_points);
+  EXPECT_EQ(fine.counts().left_out.total(), points.size() - inside);
+  EXPECT_EQ(fine.counts().left_out.total(), coarse.counts().left_out.total());
   EXPECT_EQ(fine.counts().source_points, coarse.counts().source_points);
   EXPECT_EQ(fine.hull().corners(), coarse.hull().corners());
   ASSERT_EQ(fine.size(), coarse.size());
@@ -269,14 +269,14 @@ TEST(PointStages, SortOnceMoreFromWhatWasRead) {
     return run_alone(stage, worker);
   };
   PointSource source({file.path()}, options, {{FileLayer::system(), folder.path()}, run, {}, 0});
-  EXPECT_EQ(source.sort(folder.file("below"), false).counts().left_out_points, 0U);
+  EXPECT_EQ(source.sort(folder.file("below"), false).counts().left_out.total(), 0U);
   lines.rings_are_flat = false;
   const PointBuckets twice = source.sort(folder.file("buckets"), true);
   const PointBuckets once = read_buckets({file.path()}, options);
   EXPECT_EQ(stages[kReadingStage], 1);
   EXPECT_EQ(stages[kSortingStage], 2);
   EXPECT_EQ(twice.size(), once.size());
-  EXPECT_EQ(twice.counts().left_out_points, once.counts().left_out_points);
+  EXPECT_EQ(twice.counts().left_out.total(), once.counts().left_out.total());
 }
 
 TEST(PointBuckets, KnowTheBucketOfEachPoint) {

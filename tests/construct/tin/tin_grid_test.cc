@@ -135,7 +135,7 @@ TEST(TinVertices, AreTheSameInAnyMemory) {
                                 std::filesystem::temp_directory_path().string(), bytes};
     TinVertices points(file.path(), {}, -1.0, {&memory, {}, {}});
     EXPECT_EQ(points.total(), used.size());
-    EXPECT_EQ(points.left_out(), vertices.size() - used.size());
+    EXPECT_EQ(points.left_out().total(), vertices.size() - used.size());
     auto next = used.begin();
     for (std::vector<SourcePoint> batch; points.next(batch);) {
       for (const SourcePoint& p : batch) {
@@ -158,7 +158,7 @@ TEST(TinVertices, AreThoseThatTrianglesUse) {
   std::vector<SourcePoint> batch;
   ASSERT_TRUE(points.next(batch));
   EXPECT_EQ(batch.size(), 4U);
-  EXPECT_EQ(points.left_out(), 1U);
+  EXPECT_EQ(points.left_out().total(), 1U);
   EXPECT_FALSE(points.next(batch));
 }
 

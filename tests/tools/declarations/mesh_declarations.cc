@@ -64,6 +64,28 @@ Declaration lines(const std::string& key, const std::string& option, const std::
           }};
 }
 
+/// A strip of five quads, and a triangle at its western end, as OBJ.
+std::string strip(const std::string& apex) {
+  std::string text;
+  for (int x = 0; x < 6; ++x) {
+    for (int y = 0; y < 2; ++y) {
+      text +=
+          "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x + y) + "\n";
+    }
+  }
+  text += "v " + apex + "\nf 1 2 13\n";
+  for (int v = 1; v < 11; v += 2) {
+    text += "f " + std::to_string(v) + " " + std::to_string(v + 2) + " " + std::to_string(v + 3) +
+            " " + std::to_string(v + 1) + "\n";
+  }
+  return text;
+}
+
+/// A triangle of 2000 km a side, as OBJ.
+std::string wide(const std::string& x) {
+  return "v 0 0 1\nv 2000000 0 2\nv " + x + " 2000000 3\nf 1 2 3\n";
+}
+
 std::string breakline(const std::string& type) {
   return "<Breaklines><Breakline brkType='" + type +
          "'><PntList3D>2 2 1 5 5 2</PntList3D></Breakline></Breaklines>";
@@ -84,6 +106,7 @@ std::vector<Declaration> mesh_declarations() {
            ply("comment crs: EPSG:25832\ncomment vertical_crs: EPSG:5773\n"),
            ply("comment crs: EPSG:25832\n")),
       file("mesh.ply_units", ".ply", ply("comment units: ft\n"), ply("")),
+      file("mesh.ply_height_units", ".ply", ply("comment height_units: ft\n"), ply("")),
       file("mesh.ply_shift", ".ply", ply("obj_info offset 500000 5200000 0\n"), ply("")),
       file("mesh.ply_strips", ".ply",
            ply("", "element tristrips 1\nproperty list int int vertex_indices\n"), ply("")),
@@ -93,6 +116,9 @@ std::vector<Declaration> mesh_declarations() {
       file("mesh.two_dm_element_values", ".2dm", "MESH2D\nNUM_MATERIALS_PER_ELEM 3\n" + kTwoDm,
            "MESH2D\n" + kTwoDm),
       file("mesh.encoding", ".obj", "\xFF\xFE" + kObj, kObj),
+      file("mesh.no_height", ".obj", strip("-1 0.5 -9999"), strip("-1 0.5 3")),
+      file("mesh.far_vertices", ".obj", strip("-500000 0.5 3"), strip("-1 0.5 3")),
+      file("mesh.digits", ".obj", wide("1000000.1234"), wide("1000000.12")),
       file("mesh.turned_triangles", ".obj", kObj + "f 1 4 3\n", kObj + "f 1 3 4\n"),
       xml("mesh.landxml_epsg", in_plane),
       xml("mesh.landxml_wkt", land_xml(system_of("ogcWktCode='LOCAL_CS[&quot;site&quot;]'"))),

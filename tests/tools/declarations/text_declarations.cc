@@ -46,6 +46,15 @@ std::vector<Declaration> text_declarations() {
       under("text.unit", "x[m] y[m] z[ft]\n", "x y z\n"),
       under("text.unknown_unit", "x y z(fathoms-ish)\n", "x y z\n"),
       under("text.no_number", "1 1 nan\n"),
+      under("text.no_height", "1 1.5 -9999\n"),
+      under("text.far_points", "500000 0 0\n"),
+      {"text.digits",
+       [](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
+         write_file(folder.file("source.xyz"),
+                    slope([](int x, int y, int z) { return joined(500000 * x, 500000 * y, z); }) +
+                        (is_declared ? "250000.1234 250000.1234 3\n" : "250000.12 250000.12 3\n"));
+         return {folder.file("source.xyz")};
+       }},
       {"text.encoding",
        [](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
          const std::string text = slope(joined);
