@@ -10,6 +10,7 @@
 
 #include <gdal_priv.h>
 
+#include "engine/construct/raster/vrt_background.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "tools/facts/human.h"
@@ -32,8 +33,10 @@ struct RasterFile {
   int rows = 0;
   GDALRasterBand* heights = nullptr;  ///< Of `data`, as the next one.
   GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
-  std::optional<double> nodata;       ///< That the file declares.
-  int bits_of_float = 32;             ///< Of a value of Float32.
+  /// A VRT once more, NaN where no source covers it.
+  std::unique_ptr<GDALDataset, CloseDataset> backed{};
+  std::optional<double> nodata;  ///< That the file declares.
+  int bits_of_float = 32;        ///< Of a value of Float32.
   double scale = 1.0;
   double offset = 0.0;
 
@@ -173,8 +176,9 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   std::vector<double> values(count);
   std::vector<std::uint8_t> mask(count, 255);
   GDALRasterBand& band = *file.heights;
-  CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
-                                GDT_Float64, 0, 0, nullptr);
+  GDALRasterBand& read_from = file.backed ? *file.backed->GetRasterBand(band.GetBand()) : band;
+  CPLErr status = read_from.RasterIO(GF_Read, column, row, width, height, values.data(), width,
+                                     height, GDT_Float64, 0, 0, nullptr);
   // A nodata value given at the build takes the place of the file's own; other masks stay. What a
   // mask makes of the band's nodata value alone is left to is_nodata(), and of alpha to its band.
   const int flags = band.GetMaskFlags();
@@ -252,6 +256,9 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
       return nullptr;
     choose_bands(file);
+    file.backed = open_with_background(*file.data, "nan");
+    if (file.backed && file.backed->GetRasterCount() > file.data->GetRasterCount())
+      file.alpha = file.backed->GetRasterBand(file.backed->GetRasterCount());
     GDALRasterBand& band = *file.heights;
     file.columns = band.GetXSize();
     file.rows = band.GetYSize();
