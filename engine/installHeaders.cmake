@@ -31,6 +31,7 @@ set(public_headers
     engine/construct/read/point_part.h
     engine/construct/read/text_rows.h
     engine/construct/read/text_table.h
+    engine/construct/raster/vrt_background.h
     engine/construct/scratch/external_memory.h
     engine/construct/scratch/external_sorter.h
     engine/construct/scratch/manifest.h

@@ -10,6 +10,7 @@
 
 #include <gdal_priv.h>
 
+#include "engine/construct/raster/vrt_background.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "tools/facts/human.h"
@@ -32,8 +33,10 @@ struct RasterFile {
   int rows = 0;
   GDALRasterBand* heights = nullptr;  ///< A band of `data`, as the next one.
   GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
-  std::optional<double> nodata;       ///< The value that the file declares.
-  int bits_of_float = 32;             ///< Bits of a value of Float32.
+  /// A VRT once more, NaN where no source covers it.
+  std::unique_ptr<GDALDataset, CloseDataset> backed{};
+  std::optional<double> nodata;  ///< The value that the file declares.
+  int bits_of_float = 32;        ///< Bits of a value of Float32.
   double scale = 1.0;
   double offset = 0.0;
 
@@ -126,8 +129,8 @@ bool is_signed_byte(GDALRasterBand& band) {
 bool is_nodata(double stored, double nodata, GDALDataType type, int bits_of_float) {
   if (stored == nodata) return true;
   if (type != GDT_Float32 && type != GDT_Float64) return false;
-  constexpr double kNoHeight = 1e30;  // from here on a nodata value has but three sure digits
-  if (std::abs(nodata) >= kNoHeight) {
+  constexpr double kHasFewDigits = 1e30;  // from here on a nodata value has but three sure digits
+  if (std::abs(nodata) >= kHasFewDigits) {
     const bool overflows = type == GDT_Float32 && std::abs(nodata) >= 3.41e38;
     const double most = std::numeric_limits<float>::max();
     return overflows ? stored * std::copysign(1.0, nodata) >= most
@@ -173,8 +176,9 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
   std::vector<double> values(count);
   std::vector<std::uint8_t> mask(count, 255);
   GDALRasterBand& band = *file.heights;
-  CPLErr status = band.RasterIO(GF_Read, column, row, width, height, values.data(), width, height,
-                                GDT_Float64, 0, 0, nullptr);
+  GDALRasterBand& read_from = file.backed ? *file.backed->GetRasterBand(band.GetBand()) : band;
+  CPLErr status = read_from.RasterIO(GF_Read, column, row, width, height, values.data(), width,
+                                     height, GDT_Float64, 0, 0, nullptr);
   // A nodata value given at the build takes the place of the file's own; other masks stay. A mask
   // that stands for the band's nodata value alone is left to is_nodata(), one of alpha to its band.
   const int flags = band.GetMaskFlags();
@@ -252,6 +256,9 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
       return nullptr;
     choose_bands(file);
+    file.backed = open_with_background(*file.data, "nan");
+    if (file.backed && file.backed->GetRasterCount() > file.data->GetRasterCount())
+      file.alpha = file.backed->GetRasterBand(file.backed->GetRasterCount());
     GDALRasterBand& band = *file.heights;
     file.columns = band.GetXSize();
     file.rows = band.GetYSize();

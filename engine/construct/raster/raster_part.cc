@@ -12,6 +12,7 @@
 
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/raster/raster_declared.h"
+#include "engine/construct/raster/vrt_background.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -19,6 +20,14 @@ namespace {
 
 /// The largest floats, in whatever digits: they are what programs write for no height, and no height.
 constexpr double kNoHeight = 3.4028e38;
+
+/// What stands for no source of a VRT among integers, outside of all types but Int32. Among floats NaN
+/// does.
+constexpr std::int32_t kBackground = -2'020'304'050;
+
+std::string background_of(RawType raw) {
+  return raw == RawType::kInt32 ? std::to_string(kBackground) : "nan";
+}
 
 /// False where a stored value is as large as floats get, or infinite, or is so once scaled.
 template <class T>
@@ -29,9 +38,10 @@ bool is_height(T stored, const RasterShape& shape) {
 
 /// Sets `valid` from the nodata values, and to 0 for NaN; masks are not looked at. Returns false when
 /// a valid value is no height.
+/// @param has_background  Values may be the background of a VRT.
 template <class T>
 bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid, const NodataRange& nodata,
-                const RasterShape& shape) {
+                const RasterShape& shape, [[maybe_unused]] bool has_background) {
   bool all_heights = true;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const T v = values[i];
@@ -39,6 +49,8 @@ bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid, const 
     if constexpr (!std::is_integral_v<T>) {
       is_value = is_value && !std::isnan(v);
       all_heights = all_heights && (!is_value || is_height(v, shape));
+    } else {
+      is_value = is_value && !(has_background && v == kBackground);
     }
     valid[i] = is_value;
   }
@@ -115,13 +127,31 @@ void check_heights(const SampleRange& w, std::span<const T> values,
 
 struct RasterPart::Bands : RasterBands {
   GDALDatasetUniquePtr data;
+  std::unique_ptr<GDALDataset, CloseDataset> backed;  ///< Of a VRT, with a background.
+  GDALRasterBand* values = nullptr;                   ///< The heights, where they are read.
+
+  void look_behind(RawType raw);
 };
+
+/// Reads a VRT so that what no source covers shows.
+void RasterPart::Bands::look_behind(RawType raw) {
+  values = height;
+  backed = open_with_background(*data, background_of(raw));
+  if (backed == nullptr) {
+    return;
+  }
+  values = backed->GetRasterBand(height->GetBand());
+  if (const int added = backed->GetRasterCount(); added > data->GetRasterCount()) {
+    alpha = backed->GetRasterBand(added);
+  }
+}
 
 RasterPart::RasterPart(std::string path, std::optional<double> nodata_override)
     : path_(std::move(path)), nodata_override_(nodata_override) {
   open();
   const GdalSession session;
   shape_ = shape_of(*bands_->data, *bands_->height, path_, warnings_);
+  bands_->look_behind(shape_.raw);
   const std::optional<double> nodata =
       nodata_override_ ? nodata_override_ : declared_nodata(*bands_->height);
   nodata_ = nodata_range(nodata, shape_.stored);
@@ -156,6 +186,9 @@ void RasterPart::open() {
   if (changed) {
     throw Error(ErrorCode::io_error, "the raster changed its size while it was read", path_);
   }
+  if (shape_.width != 0) {
+    bands->look_behind(shape_.raw);
+  }
   bands_ = std::move(bands);
 }
 
@@ -172,12 +205,12 @@ void RasterPart::read(const SampleRange& window, std::span<T> values,
   if (!is_open()) {
     open();
   }
-  read_band(*bands_->height, shape_, window, values, path_);
+  read_band(*bands_->values, shape_, window, values, path_);
   if (shape_.stored.signed_bytes) {
     std::transform(values.begin(), values.end(), values.begin(),
                    [](T v) { return v > T{127} ? v - T{256} : v; });
   }
-  const bool all_heights = find_valid<T>(values, valid, nodata_, shape_);
+  const bool all_heights = find_valid<T>(values, valid, nodata_, shape_, bands_->backed != nullptr);
   const auto mask_out = [&]<class M>(GDALRasterBand* band, std::vector<M> mask) {
     if (band == nullptr) {
       return;

@@ -21,6 +21,7 @@ struct Declaration {
 };
 
 [[nodiscard]] std::vector<Declaration> raster_declarations();
+[[nodiscard]] std::vector<Declaration> raster_format_declarations();
 [[nodiscard]] std::vector<Declaration> las_declarations();
 [[nodiscard]] std::vector<Declaration> text_declarations();
 [[nodiscard]] std::vector<Declaration> layer_declarations();

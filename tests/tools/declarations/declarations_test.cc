@@ -45,9 +45,9 @@ std::map<std::string, std::string> documented() {
 
 std::vector<Declaration> all_declarations() {
   std::vector<Declaration> all;
-  for (auto list :
-       {testing::raster_declarations(), testing::las_declarations(), testing::text_declarations(),
-        testing::layer_declarations(), testing::mesh_declarations()}) {
+  for (auto list : {testing::raster_declarations(), testing::las_declarations(),
+                    testing::text_declarations(), testing::layer_declarations(),
+                    testing::mesh_declarations(), testing::raster_format_declarations()}) {
     all.insert(all.end(), list.begin(), list.end());
   }
   return all;

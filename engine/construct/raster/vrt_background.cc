@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/raster/vrt_background.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include <cpl_minixml.h>
+#include <cpl_string.h>
+#include <gdal_priv.h>
+
+namespace ptin {
+namespace {
+
+/// VRTs in VRTs are looked through to this depth: one may name itself.
+constexpr int kDeepest = 8;
+
+struct FreeXml {
+  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
+};
+using Xml = std::unique_ptr<CPLXMLNode, FreeXml>;
+
+bool is_vrt(GDALDataset& data) {
+  return data.GetDriver() != nullptr && EQUAL(data.GetDriverName(), "VRT");
+}
+
+/// The folder to which names in the XML of a VRT are relative.
+std::string folder_of_vrt(GDALDataset& data) {
+  const std::string name = data.GetDescription();
+  return name.starts_with("<VRTDataset") ? "" : CPLGetPath(name.c_str());
+}
+
+std::vector<CPLXMLNode*> elements_in(CPLXMLNode* parent) {
+  std::vector<CPLXMLNode*> found;
+  for (CPLXMLNode* child = parent->psChild; child != nullptr; child = child->psNext) {
+    if (child->eType == CXT_Element) {
+      found.push_back(child);
+    }
+  }
+  return found;
+}
+
+void set_element(CPLXMLNode* parent, const char* name, const std::string& value) {
+  if (CPLXMLNode* const old = CPLGetXMLNode(parent, name)) {
+    CPLRemoveXMLChild(parent, old);
+    CPLDestroyXMLNode(old);
+  }
+  CPLCreateXMLElementAndValue(parent, name, value.c_str());
+}
+
+std::string text_of(CPLXMLNode* root) {
+  char* const serialized = CPLSerializeXMLTree(root);
+  std::string text = serialized == nullptr ? "" : serialized;
+  CPLFree(serialized);
+  return text;
+}
+
+std::string with_background(GDALDataset& data, const std::string& background, int depth);
+
+/// Lets a source that is a VRT itself not cover what none of its own sources covers.
+void look_through(CPLXMLNode* source, const std::string& folder, const std::string& background,
+                  int depth) {
+  CPLXMLNode* const named = CPLGetXMLNode(source, "SourceFilename");
+  const std::string name = CPLGetXMLValue(source, "SourceFilename", "");
+  const bool may_be_vrt =
+      name.starts_with("<VRTDataset") || EQUAL(CPLGetExtension(name.c_str()), "vrt");
+  if (named == nullptr || !may_be_vrt ||
+      STARTS_WITH_CI(CPLGetXMLValue(source, "SourceBand", "1"), "mask")) {
+    return;
+  }
+  const bool is_relative = EQUAL(CPLGetXMLValue(named, "relativeToVRT", "0"), "1");
+  const std::string path =
+      is_relative ? CPLProjectRelativeFilename(folder.c_str(), name.c_str()) : name;
+  const GDALDatasetUniquePtr inner(
+      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  if (inner == nullptr || !is_vrt(*inner)) {
+    return;
+  }
+  const std::string text = with_background(*inner, background, depth + 1);
+  if (text.empty()) {
+    return;
+  }
+  CPLSetXMLValue(source, "SourceFilename", text.c_str());
+  CPLSetXMLValue(source, "SourceFilename.#relativeToVRT", "0");
+  CPLXMLNode* const options = CPLCreateXMLNode(source, CXT_Element, "OpenOptions");
+  CPLXMLNode* const option =
+      CPLCreateXMLElementAndValue(options, "OOI", folder_of_vrt(*inner).c_str());
+  CPLAddXMLAttributeAndValue(option, "key", "ROOT_PATH");
+  if (EQUAL(source->pszValue, "SimpleSource")) {
+    CPLFree(source->pszValue);
+    source->pszValue = CPLStrdup("ComplexSource");
+  }
+  if (EQUAL(source->pszValue, "ComplexSource") && CPLGetXMLNode(source, "NODATA") == nullptr) {
+    set_element(source, "NODATA", background);
+  }
+}
+
+bool has_sources(const CPLXMLNode* band) {
+  return EQUAL(CPLGetXMLValue(band, "subClass", "VRTSourcedRasterBand"), "VRTSourcedRasterBand");
+}
+
+/// Adds an alpha band to a VRT that warps. False where it tells otherwise what it covers.
+bool add_alpha(CPLXMLNode* root) {
+  CPLXMLNode* const options = CPLGetXMLNode(root, "GDALWarpOptions");
+  if (options == nullptr || CPLGetXMLNode(options, "DstAlphaBand") != nullptr) {
+    return false;
+  }
+  int bands = 0;
+  for (CPLXMLNode* child : elements_in(root)) {
+    if (EQUAL(child->pszValue, "VRTRasterBand")) {
+      ++bands;
+      if (CPLGetXMLNode(child, "NoDataValue") != nullptr) {
+        return false;
+      }
+    }
+  }
+  CPLXMLNode* const alpha = CPLCreateXMLNode(root, CXT_Element, "VRTRasterBand");
+  CPLAddXMLAttributeAndValue(alpha, "dataType", "Byte");
+  CPLAddXMLAttributeAndValue(alpha, "band", std::to_string(bands + 1).c_str());
+  CPLAddXMLAttributeAndValue(alpha, "subClass", "VRTWarpedRasterBand");
+  CPLCreateXMLElementAndValue(alpha, "ColorInterp", "Alpha");
+  set_element(options, "DstAlphaBand", std::to_string(bands + 1));
+  return true;
+}
+
+/// The XML of a VRT with the background in its bands; "" where it has none.
+std::string with_background(GDALDataset& data, const std::string& background, int depth) {
+  char** const xml = data.GetMetadata("xml:VRT");
+  if (depth > kDeepest || xml == nullptr || xml[0] == nullptr) {
+    return {};
+  }
+  const Xml parsed(CPLParseXMLString(xml[0]));
+  CPLXMLNode* const root = CPLGetXMLNode(parsed.get(), "=VRTDataset");
+  if (root == nullptr) {
+    return {};
+  }
+  const std::string kind = CPLGetXMLValue(root, "subClass", "");
+  bool has_changed = false;
+  if (kind == "VRTWarpedDataset") {
+    has_changed = depth == 0 && add_alpha(root);
+  }
+  for (CPLXMLNode* band : elements_in(root)) {
+    if (!kind.empty() || !EQUAL(band->pszValue, "VRTRasterBand") || !has_sources(band) ||
+        EQUAL(CPLGetXMLValue(band, "ColorInterp", ""), "Alpha")) {
+      continue;
+    }
+    for (CPLXMLNode* source : elements_in(band)) {
+      look_through(source, folder_of_vrt(data), background, depth);
+    }
+    set_element(band, "NoDataValue", background);
+    has_changed = true;
+  }
+  return has_changed ? text_of(root) : std::string();
+}
+
+}  // namespace
+
+void CloseDataset::operator()(GDALDataset* data) const noexcept { GDALClose(data); }
+
+std::unique_ptr<GDALDataset, CloseDataset> open_with_background(GDALDataset& data,
+                                                                const std::string& background) {
+  const std::string text = is_vrt(data) ? with_background(data, background, 0) : "";
+  if (text.empty()) {
+    return nullptr;
+  }
+  CPLStringList options;
+  options.SetNameValue("ROOT_PATH", folder_of_vrt(data).c_str());
+  static constexpr const char* kDrivers[] = {"VRT", nullptr};
+  return std::unique_ptr<GDALDataset, CloseDataset>(
+      GDALDataset::Open(text.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers, options.List()));
+}
+
+}  // namespace ptin
