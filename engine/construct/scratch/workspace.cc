@@ -152,8 +152,9 @@ void remove_folder(FileLayer& files, const std::string& path) {
 
 /// The JSON as it is after it has been written and read: NaN becomes null, and bytes that are no
 /// UTF-8 are replaced.
-nlohmann::json as_read_back(const nlohmann::json& json) {
-  return nlohmann::json::parse(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+nlohmann::json as_read_back(const nlohmann::json& value) {
+  return nlohmann::json::parse(
+      value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 nlohmann::json first_line(const nlohmann::json& fingerprint, const std::string& tmp,
