@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/construct/build_job.h"
-#include "engine/construct/delaunay/boundary_drape.h"
+#include "engine/construct/delaunay/line_drape.h"
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/memory_plan.h"
@@ -21,7 +21,7 @@ namespace ptin::build_internal {
 
 namespace {
 
-/// The files of the points' buckets while a boundary is laid on them.
+/// The files of the points' buckets while lines are laid on them.
 constexpr const char* kPointsBelow = "below";
 
 PointFiles point_files(const Job& job, const Workspace& workspace) {
@@ -45,22 +45,35 @@ SourceDisk disk_of(const Job& job, const PointCount& count) {
   disk.while_reading = std::max(
       disk.while_reading,
       disk.spooled + of_tins * TinVertices::disk_of_vertex(job.options.nodata.has_value()));
-  if (job.lines.rings_are_flat) {
-    disk.while_reading += disk.kept;  // the points below the boundary, until it lies on them
+  if (job.lines.want_ground()) {
+    disk.while_reading += disk.kept;  // the points below the lines, until they lie on them
   }
   return disk;
 }
 
-/// Lays a boundary without heights on the points. They are sorted for this, and once more with the
-/// boundary.
-void lay_boundary(Job& job, const PointFiles& files, PointSource& source) {
+/// Adds the lines of `more`, which have ground as those of `set`.
+void append(const LineSet& more, LineSet& set) {
+  const std::size_t before = set.vertices.size();
+  set.vertices.insert(set.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const std::uint64_t end : more.ends) {
+    set.ends.push_back(before + end);
+  }
+}
+
+/// Lays lines and a boundary without heights on the points. They are sorted for this, and once more
+/// with the lines.
+void lay_lines(Job& job, const PointFiles& files, PointSource& source) {
   const PointBuckets points = source.sort(files.path(kPointsBelow, 0), false);
-  BoundaryDrape drape(job.lines.rings, points);
-  LineSet laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
-                           job.resources.stop, job.stage("laying the boundary"));
-  job.lines.breaklines = drape.divided_lines();
-  job.lines.rings = std::move(laid);
-  job.lines.rings_are_flat = false;
+  SourceLines& lines = job.lines;
+  LineDrape drape(lines.rings_are_flat ? lines.rings : LineSet{}, lines.flat_breaklines, points);
+  LineDrape::Laid laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
+                                   job.resources.stop, job.stage("laying the lines"));
+  lines.breaklines = drape.divided_lines(false);
+  append(laid.lines, lines.breaklines);
+  lines.rings = lines.rings_are_flat ? std::move(laid.rings) : drape.divided_lines(true);
+  lines.flat_breaklines = {};
+  lines.rings_are_flat = false;
+  lines.are_laid = true;
 }
 
 /// The points as an interrupted build had sorted them, or else read and sorted now.
@@ -85,9 +98,9 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
   }
   PointBuckets points = [&] {
     PointSource source(job.inputs, job.source_options(), work_of(job, workspace));
-    if (job.lines.rings_are_flat) {
+    if (job.lines.want_ground()) {
       const PointFiles files = point_files(job, workspace);
-      lay_boundary(job, files, source);
+      lay_lines(job, files, source);
       files.remove_all(kPointsBelow);
     }
     return source.sort(buckets, true);

@@ -66,9 +66,10 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
           plain_measure(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
       ->type_name("L");
   app.add_option("--breaklines", options.breaklines,
-                 "Points, --repair: lines with heights that become edges of the TIN, from layers "
-                 "that OGR\n"
-                 "reads or LandXML; several files, behind INPUT")
+                 "Points, --repair: lines that become edges of the TIN, from layers that OGR reads "
+                 "or\n"
+                 "LandXML; without heights they are laid on the surface; several files, behind "
+                 "INPUT")
       ->type_name("FILE");
   app.add_option("--breakline-layer", options.breakline_layer,
                  "Breaklines of this layer, where a file holds several")

@@ -100,28 +100,35 @@ void LineSamples::add_vertex(VertexKey key, double height, bool keeps_lower) {
 void LineSamples::read(const std::string& path, const std::string& layer, bool is_boundary,
                        const std::stop_token& stop) {
   const AffineMap& map = facts_->map;
-  const auto place_of = [&](const SourcePoint& p) {
+  const auto place_of = [&](const SourcePoint& p, bool is_laid) {
     const double x = steps_of(p.x, map.origin_x, map.step_x);
     const double y = steps_of(p.y, map.origin_y, map.step_y);
-    if (!(x >= 0 && y >= 0 && x <= kGridMax && y <= kGridMax)) {
+    // What of a line without heights has no surface below is no part of the terrain.
+    const double least = is_laid ? -kGridMax : 0.0;
+    if (!(x >= least && y >= least && x <= kGridMax && y <= kGridMax)) {
       refuse("these lines reach beyond what the terrain may hold: they are not those of its build",
              path);
     }
     return GridPoint{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   };
   std::vector<std::pair<VertexKey, double>> vertices;
-  const auto take = [&](const std::vector<SourcePoint>& line) {
+  const auto take = [&](const std::vector<SourcePoint>& line, bool has_heights) {
+    const bool is_laid = !is_boundary && !has_heights;  // divides others, and is none itself
     for (std::size_t i = 0; i < line.size(); ++i) {
-      const GridPoint p = place_of(line[i]);
-      vertices.emplace_back(key_of(p), stored(line[i].z, facts_->heights));
-      if (i > 0) pieces_.push_back({place_of(line[i - 1]), p, !is_boundary, is_boundary});
+      const GridPoint p = place_of(line[i], is_laid);
+      vertices.emplace_back(key_of(p), is_laid ? kNoHeight : stored(line[i].z, facts_->heights));
+      if (i > 0)
+        pieces_.push_back(
+            {place_of(line[i - 1], is_laid), p, !is_boundary && !is_laid, is_boundary});
     }
   };
   const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
                       "a build with that layer alone"};
   const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
   is_flat_ = is_flat_ || is_flat;
-  for (const auto& [key, height] : vertices) add_vertex(key, is_flat ? kNoHeight : height, true);
+  is_boundary_flat_ = is_boundary && is_flat;
+  for (const auto& [key, height] : vertices)
+    add_vertex(key, is_boundary_flat_ ? kNoHeight : height, true);
 }
 
 /// Sorts pieces, and makes one of those that fall together; of a boundary's two cancel.
@@ -275,7 +282,7 @@ bool LineSamples::is_beside_boundary(GridPoint p) const {
 /// By the pieces that lie left of the point in its row, counted half open; or on the boundary.
 bool LineSamples::holds(GridPoint p) const {
   if (!has_boundary_) return true;
-  if (is_flat_ && is_beside_boundary(p)) return false;
+  if (is_boundary_flat_ && is_beside_boundary(p)) return false;
   bool is_inside = false;
   for (const LinePiece& s : bands_[band_of(p.y)]) {
     const std::int64_t side = orient(s.a, s.b, p);
@@ -317,7 +324,7 @@ void LineSamples::drop_outside() {
   }
   vertices_ = std::move(used);
   if (has_boundary_) index_boundary();
-  if (is_flat_) std::erase_if(pieces_, [](const LinePiece& s) { return !s.breakline; });
+  if (is_boundary_flat_) std::erase_if(pieces_, [](const LinePiece& s) { return !s.breakline; });
 }
 
 }  // namespace ptin::tools

@@ -36,7 +36,7 @@ class LineSamples {
   ///                other files of lines than these, or without, or a file holds no lines
   LineSamples(const LineInputs& inputs, const StoreFile& store, const std::stop_token& stop);
 
-  [[nodiscard]] bool is_empty() const { return pieces_.empty() && !has_boundary_; }
+  [[nodiscard]] bool is_empty() const { return pieces_.empty() && !has_boundary_ && !is_flat_; }
   /// The vertices of lines that are samples, with their heights as the file stores them.
   [[nodiscard]] const std::map<VertexKey, double>& vertices() const { return vertices_; }
   [[nodiscard]] const std::vector<LinePiece>& pieces() const { return pieces_; }
@@ -44,7 +44,8 @@ class LineSamples {
   /// without heights that rounding to the grid decides.
   [[nodiscard]] bool holds(GridPoint p) const;
   [[nodiscard]] bool has_boundary() const { return has_boundary_; }
-  /// The boundary has no heights: it tells inside from outside, and has no samples.
+  /// The boundary has no heights: it tells inside from outside, and has no samples; or breaklines have
+  /// none, which tell nothing.
   [[nodiscard]] bool is_flat() const { return is_flat_; }
   /// Takes a sample along: it divides the pieces that it lies on, at its own height.
   void divide_at(GridPoint p);
@@ -70,7 +71,7 @@ class LineSamples {
   std::map<VertexKey, double> vertices_;
   std::vector<LinePiece> pieces_;  ///< Sorted by their least x.
   std::int64_t widest_ = 0;        ///< The largest width of a piece.
-  bool has_boundary_ = false, is_flat_ = false;
+  bool has_boundary_ = false, is_flat_ = false, is_boundary_flat_ = false;
   std::vector<std::vector<LinePiece>> bands_;  ///< Of the boundary, by rows of the terrain.
   std::vector<std::pair<std::size_t, GridPoint>> divisions_;
 };

@@ -70,9 +70,11 @@ double StepCounter::rest(Decimal value) const noexcept {
   if (value.decimals <= decimals_) {
     return 0.0;
   }
-  const std::int64_t rest =
-      value.mantissa - steps(value) * power_of_ten(value.decimals - decimals_);
-  return static_cast<double>(rest) / static_cast<double>(power_of_ten(value.decimals));
+  const auto length = [](std::int64_t mantissa, int decimals) {
+    return static_cast<long double>(mantissa) / static_cast<long double>(power_of_ten(decimals));
+  };
+  return static_cast<double>(length(value.mantissa, value.decimals) -
+                             length(steps(value), decimals_));
 }
 
 int DecimalRange::decimals() const noexcept {

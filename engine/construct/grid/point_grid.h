@@ -36,8 +36,8 @@ class StepCounter {
   [[nodiscard]] double unit() const noexcept;
   /// The coordinate at a number of steps.
   [[nodiscard]] double coordinate(std::int64_t steps) const noexcept;
-  /// `value` less the coordinate of its step. Where steps are counted exactly it has no error but one
-  /// rounding.
+  /// `value` less the coordinate of its step. Where steps are counted exactly it is off by what 64 bits
+  /// of both lack.
   [[nodiscard]] double rest(Decimal value) const noexcept;
   /// How far rounding to a step moves `value`.
   [[nodiscard]] double shift(Decimal value) const noexcept { return std::abs(rest(value)); }

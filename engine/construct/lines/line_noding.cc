@@ -108,7 +108,7 @@ void Noding::join_vertices() {
     double& low = kept[place[i]].height;
     low = std::min(low, v.height);
     highest[place[i]] = std::max(highest[place[i]], v.height);
-    if (highest[place[i]] - low > rules_.height_step) {
+    if (rules_.compares_heights && highest[place[i]] - low > rules_.height_step) {
       refuse_heights(v.position, low, highest[place[i]]);
     }
   }
@@ -155,7 +155,8 @@ bool Noding::touch(std::uint32_t edge, std::uint32_t vertex, const LineEdge& of)
     return false;
   }
   const double on_edge = height_on(e, p);
-  if (std::abs(on_edge - height(vertex)) > rules_.height_step + slope(e) + slope(of)) {
+  if (rules_.compares_heights &&
+      std::abs(on_edge - height(vertex)) > rules_.height_step + slope(e) + slope(of)) {
     refuse_heights(p, on_edge, height(vertex));
   }
   if (divisions_.size() >= 4 * rules_.most_vertices) {
@@ -214,7 +215,8 @@ void Noding::cross(std::uint32_t one, std::uint32_t other) {
   graph_.largest_bend = std::max(graph_.largest_bend, bend);
   const std::uint32_t vertex = vertex_at(p, std::min(on_e, on_f));
   for (const double other_height : {on_f, height(vertex)}) {
-    if (std::abs(on_e - other_height) > rules_.height_step + slope(e) + slope(f)) {
+    if (rules_.compares_heights &&
+        std::abs(on_e - other_height) > rules_.height_step + slope(e) + slope(f)) {
       refuse_heights(p, on_e, other_height);
     }
   }

@@ -42,7 +42,10 @@ struct LineGraph {
 
 /// How heights are compared where lines meet, and how a place is told.
 struct NodingRules {
-  double height_step = 0.0;     ///< Heights that differ by no more are equal.
+  double height_step = 0.0;  ///< Heights that differ by no more are equal.
+  /// False: heights of lines that meet are not compared, since they are those of one surface but for
+  /// rounding.
+  bool compares_heights = true;
   bool whole_heights = false;   ///< Heights are codes: those of crossings are rounded.
   double height_of_unit = 1.0;  ///< What one unit of LineVertex::height is in the height's unit.
   AffineMap map;                ///< For messages.

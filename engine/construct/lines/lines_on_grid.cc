@@ -51,6 +51,7 @@ LinesOnGrid put_on_grid(const SourceLines& lines, const PointGrid& grid,
         std::max(result.largest_shift_plan, add_lines(lines.rings, grid, true, graph));
   }
   NodingRules rules;
+  rules.compares_heights = !lines.are_laid;
   rules.whole_heights = grid.whole;
   rules.height_of_unit = grid.whole ? grid.heights.unit() : 1.0;
   rules.height_step = grid.whole ? 1.0 : grid.heights.unit();

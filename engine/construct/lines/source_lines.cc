@@ -46,19 +46,32 @@ SourceLines read_source_lines(const LineChoice& choice, std::uint64_t most_bytes
                               const std::stop_token& stop) {
   SourceLines lines;
   LineKeeper keeper(most_bytes);
-  const auto read = [&](const std::string& path, const LineWish& wish, LineSet& to) {
-    const LineFileCrs file = read_line_file(
-        path, wish, [&](const std::vector<SourcePoint>& line) { keeper.take(line, to); }, stop);
+  const auto read = [&](const std::string& path, const LineWish& wish, const TakeLine& take) {
+    const LineFileCrs file = read_line_file(path, wish, take, stop);
     lines.files.push_back({path, file.crs, file.units});
     lines.warnings.join(file.warnings);
-    lines.rings_are_flat = lines.rings_are_flat || file.is_flat;
+    return file.is_flat;
   };
   for (const std::string& path : choice.breaklines) {
-    read(path, {LayerKind::kLines, choice.breakline_layer, "--breakline-layer"}, lines.breaklines);
+    std::uint64_t flat = 0;
+    read(path, {LayerKind::kLines, choice.breakline_layer, "--breakline-layer"},
+         [&](const std::vector<SourcePoint>& line, bool has_heights) {
+           flat += has_heights ? 0 : 1;
+           keeper.take(line, has_heights ? lines.breaklines : lines.flat_breaklines);
+         });
+    if (flat > 0) {
+      lines.warnings.add({.kind = "draped_breaklines",
+                          .message =
+                              "a breakline has no heights, and is laid on the surface of the "
+                              "points; it divides triangles and tells no height of its own",
+                          .file = path,
+                          .count = flat});
+    }
   }
   if (!choice.boundary.empty()) {
-    read(choice.boundary, {LayerKind::kAreas, choice.boundary_layer, "--boundary-layer"},
-         lines.rings);
+    lines.rings_are_flat =
+        read(choice.boundary, {LayerKind::kAreas, choice.boundary_layer, "--boundary-layer"},
+             [&](const std::vector<SourcePoint>& ring, bool) { keeper.take(ring, lines.rings); });
   }
   keeper.require_room();
   lines.most_vertices =

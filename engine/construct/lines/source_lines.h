@@ -41,16 +41,22 @@ struct LineFileFacts {
 /// All lines that a terrain is built with.
 struct SourceLines {
   LineSet breaklines;
-  LineSet rings;  ///< Of the boundary; the first vertex of each is its last one too.
+  LineSet flat_breaklines;  ///< Without heights: as rings that are flat.
+  LineSet rings;            ///< Of the boundary; the first vertex of each is its last one too.
   /// The rings have no heights yet: they extend the grid, and nothing else is made of them
-  /// (delaunay/boundary_drape.h).
+  /// (delaunay/line_drape.h).
   bool rings_are_flat = false;
+  /// Lines without heights were laid on the surface, with all others, which agreed where they met.
+  bool are_laid = false;
   std::vector<LineFileFacts> files;
   SourceWarnings warnings;                       ///< Warnings of all files.
   std::uint64_t most_vertices = UINT32_MAX - 1;  ///< The number that there is memory for.
 
   [[nodiscard]] bool is_empty() const noexcept {
-    return breaklines.size() == 0 && rings.size() == 0;
+    return breaklines.size() == 0 && flat_breaklines.size() == 0 && rings.size() == 0;
+  }
+  [[nodiscard]] bool want_ground() const noexcept {
+    return rings_are_flat || flat_breaklines.size() > 0;
   }
 };
 
@@ -61,7 +67,7 @@ inline constexpr std::uint64_t kBytesOfLineVertex = 320;
 /// Reads the files of a choice.
 /// @param most_bytes  For all lines; kBytesOfLineVertex a vertex.
 /// @throws Error  not_found, io_error
-///                invalid_argument    a file holds no lines (or areas) with heights, or none at all
+///                invalid_argument    a file holds no lines (or areas)
 ///                resource_exhausted  more vertices than `most_bytes` hold; the message names them
 ///                cancelled
 [[nodiscard]] SourceLines read_source_lines(

@@ -253,8 +253,9 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
   }
   const std::string crs = is_crs(reading.crs) ? reading.crs : "";
   const bool degrees = resolve_crs(crs, options.a_srs, "").geographic;
-  for (const LineSet* set : {&lines.breaklines, &lines.rings}) {
-    const bool is_flat = set == &lines.rings && lines.rings_are_flat;
+  for (const LineSet* set : {&lines.breaklines, &lines.flat_breaklines, &lines.rings}) {
+    const bool is_flat =
+        set == &lines.flat_breaklines || (set == &lines.rings && lines.rings_are_flat);
     for (std::size_t i = 0; i < set->vertices.size(); ++i) {
       const SourcePoint& v = set->vertices[i];
       const bool has_height = !is_flat && (set->has_ground.empty() || set->has_ground[i] != 0);

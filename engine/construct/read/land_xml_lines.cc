@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // LandXML 1.0 to 1.2: Surfaces/Surface/SourceData with Breaklines/Breakline and Boundaries/Boundary,
-// each with a PntList3D: northing, easting and height of one vertex after the other. A Boundary may
-// have a PntList2D, without heights.
+// each with a PntList3D: northing, easting and height of one vertex after the other; or a PntList2D,
+// without heights.
 #include "engine/construct/read/land_xml_lines.h"
 
 #include "engine/construct/read/byte_reader.h"
@@ -19,8 +19,7 @@ constexpr std::size_t kLongestList = std::size_t{16} << 20;  // bytes of text
 
 class LandXmlLines final : public LandXmlElements {
  public:
-  LandXmlLines(ByteReader& in, const LineWish& wish,
-               const std::function<void(const std::vector<SourcePoint>&)>& take,
+  LandXmlLines(ByteReader& in, const LineWish& wish, const TakeLine& take,
                const std::stop_token& stop)
       : LandXmlElements(in),
         wish_(wish),
@@ -31,8 +30,7 @@ class LandXmlLines final : public LandXmlElements {
   LineFileCrs read() {
     parse();
     if (lines_ == 0) {
-      refuse(std::string("there is no ") + element_ + " with a PntList3D " +
-                 (wants_areas() ? "or PntList2D in " : "in ") +
+      refuse(std::string("there is no ") + element_ + " with a PntList3D or PntList2D in " +
                  (wish_.layer.empty() ? "this file" : "the surface '" + wish_.layer + "'") +
                  (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
              in_.path());
@@ -61,12 +59,9 @@ class LandXmlLines final : public LandXmlElements {
       if (in_line_) {
         note_type(attributes);
       }
-    } else if (in_line_ && (name == "PntList3D" || (name == "PntList2D" && wants_areas()))) {
+    } else if (in_line_ && (name == "PntList3D" || name == "PntList2D")) {
       numbers_of_vertex_ = name == "PntList3D" ? 3 : 2;
       gather(kLongestList, "a list of points holds more text than 16 MiB");
-    } else if (in_line_ && name == "PntList2D") {
-      refuse_here(std::string("this ") + element_ +
-                  " has no heights; give its vertices heights first, or leave it out");
     }
   }
 
@@ -128,14 +123,14 @@ class LandXmlLines final : public LandXmlElements {
       vertices_.push_back(first);
     }
     ++lines_;
-    take_(vertices_);
+    take_(vertices_, n == 3);
   }
 
   [[nodiscard]] bool wants_areas() const { return wish_.kind == LayerKind::kAreas; }
 
   const LineWish& wish_;
   const char* element_;
-  const std::function<void(const std::vector<SourcePoint>&)>& take_;
+  const TakeLine& take_;
   std::stop_token stop_;
   bool is_wanted_ = false, in_line_ = false;
   std::uint64_t lines_ = 0, lines_of_surface_ = 0;
@@ -150,8 +145,7 @@ class LandXmlLines final : public LandXmlElements {
 
 }  // namespace
 
-LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish,
-                                const std::function<void(const std::vector<SourcePoint>&)>& take,
+LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish, const TakeLine& take,
                                 const std::stop_token& stop) {
   ByteReader in(path);
   return LandXmlLines(in, wish, take, stop).read();

@@ -8,8 +8,7 @@
 namespace ptin {
 
 /// As read_line_file(), of LandXML.
-[[nodiscard]] LineFileCrs read_land_xml_lines(
-    const std::string& path, const LineWish& wish,
-    const std::function<void(const std::vector<SourcePoint>&)>& take, const std::stop_token& stop);
+[[nodiscard]] LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish,
+                                              const TakeLine& take, const std::stop_token& stop);
 
 }  // namespace ptin

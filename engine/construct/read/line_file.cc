@@ -18,8 +18,6 @@ namespace ptin {
 
 namespace {
 
-using TakeLine = std::function<void(const std::vector<SourcePoint>&)>;
-
 GDALDatasetUniquePtr open_vector(const std::string& path, const GdalSession& session) {
   GDALDatasetUniquePtr data(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
@@ -78,11 +76,6 @@ class LineFeatures {
 
   void add_line(const OGRLineString& line) {
     const bool is_flat = line.Is3D() == 0;
-    if (is_flat && !wants_areas_) {
-      refuse_here(
-          "this line has no heights, and a breakline is one by its heights; give its vertices "
-          "heights first, or leave it out");
-    }
     is_flat_ = is_flat_ || is_flat;
     vertices_.clear();
     for (int i = 0; i < line.getNumPoints(); ++i) {
@@ -96,7 +89,7 @@ class LineFeatures {
       vertices_.push_back(vertices_.front());
     }
     ++lines_;
-    take_(vertices_);
+    take_(vertices_, !is_flat);
   }
 
   [[nodiscard]] Decimal number(double value, const char* role) const {

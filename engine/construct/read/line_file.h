@@ -23,26 +23,27 @@ struct LineWish {
 
 /// What a file of lines declares.
 struct LineFileCrs {
-  std::string crs;      ///< As PointStreamFacts::crs.
-  DeclaredUnits units;  ///< As PointStreamFacts::units.
-  /// Some polygon has no heights: then z means nothing of any of them.
-  bool is_flat = false;
+  std::string crs;       ///< As PointStreamFacts::crs.
+  DeclaredUnits units;   ///< As PointStreamFacts::units.
+  bool is_flat = false;  ///< Some line or polygon has no heights.
   SourceWarnings warnings{};
 };
+
+/// Takes a line. @param has_heights  False: the z of its vertices means nothing.
+using TakeLine = std::function<void(const std::vector<SourcePoint>& line, bool has_heights)>;
 
 /// True where the name tells LandXML: .xml or .landxml, in any case.
 [[nodiscard]] bool is_land_xml(const std::string& path);
 
-/// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A vertex
-/// of a line has a height always, polygons may have none; a ring ends with the vertex that it begins with. Features without a geometry
+/// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A ring ends
+/// with the vertex that it begins with. Features without a geometry
 /// are passed over. Of LandXML these are the Breaklines and the Boundaries of a surface's SourceData,
 /// with northing before easting; of other files what OGR reads.
 /// @throws Error  not_found, io_error, cancelled
 ///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
-///                                  no line (no polygon), has curves, or a line without heights, or
+///                                  no line (no polygon), has curves, or
 ///                                  a number that is not finite; there is no line at all
-[[nodiscard]] LineFileCrs read_line_file(
-    const std::string& path, const LineWish& wish,
-    const std::function<void(const std::vector<SourcePoint>&)>& take, const std::stop_token& stop);
+[[nodiscard]] LineFileCrs read_line_file(const std::string& path, const LineWish& wish,
+                                         const TakeLine& take, const std::stop_token& stop);
 
 }  // namespace ptin

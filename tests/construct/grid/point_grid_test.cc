@@ -56,9 +56,9 @@ TEST(DecimalRange, KnowsTheDigitsOfAllRoundedAlsoInParts) {
 
 TEST(StepCounter, TellsHowFarAValueIsFromItsStep) {
   const StepCounter hundredths(2);
-  EXPECT_EQ(hundredths.rest({12345, 4}), 0.0045);
-  EXPECT_EQ(hundredths.rest({-12345, 4}), -0.0045);
-  EXPECT_EQ(hundredths.rest({1235, 3}), -0.005) << "ties go away from zero";
+  EXPECT_NEAR(hundredths.rest({12345, 4}), 0.0045, 1e-17);
+  EXPECT_NEAR(hundredths.rest({-12345, 4}), -0.0045, 1e-17);
+  EXPECT_NEAR(hundredths.rest({1235, 3}), -0.005, 1e-17) << "ties go away from zero";
   EXPECT_EQ(hundredths.rest({125, 2}), 0.0);
   EXPECT_EQ(hundredths.rest({7, 0}), 0.0);
   const StepCounter quarters(0.25, 0.0);

@@ -23,7 +23,7 @@ std::string lines_in(const std::string& name, const std::string& content,
   try {
     const LineFileCrs facts =
         read_line_file(folder.file(name), {kind, layer, "--option"},
-                       [&](const std::vector<SourcePoint>& line) {
+                       [&](const std::vector<SourcePoint>& line, bool) {
                          for (const SourcePoint& v : line) {
                            for (const Decimal d : {v.x, v.y, v.z}) {
                              text += std::to_string(std::lround(to_double(d) * 10)) + " ";
@@ -51,11 +51,11 @@ TEST(LineFile, ReadsLinesOfEveryKind) {
       "0 0 10 40 0 10 40 40 10 0 0 10 | 10 0 20 20 0 20 20 10 20 10 0 20 | ");
 }
 
-TEST(LineFile, RefusesWhatIsNoLineWithHeights) {
+TEST(LineFile, TellsLinesWithoutHeightsAndRefusesWhatIsNone) {
   const auto refusal = [](const std::string& wkt, LayerKind kind = LayerKind::kLines) {
     return lines_in("a.csv", csv(wkt), kind);
   };
-  EXPECT_NE(refusal("LINESTRING (1 2,4 5)").find("has no heights"), std::string::npos);
+  EXPECT_EQ(refusal("LINESTRING (1 2,4 5)"), "10 20 0 40 50 0 | without heights");
   EXPECT_EQ(refusal("POLYGON ((0 0,1 0,1 1,0 0))", LayerKind::kAreas),
             "0 0 0 10 0 0 10 10 0 0 0 0 | without heights");
   EXPECT_NE(refusal("POINT Z (1 2 3)").find("this is a POINT, not a line"), std::string::npos);
@@ -99,8 +99,8 @@ TEST(LineFile, RefusesLandXmlWithoutLinesOrWithThoseOfSeveralSurfaces) {
   std::string flat(kOne);
   flat.replace(flat.find("<PntList3D>20 10 3\n50 40 6</PntList3D>"), 38,
                "<PntList2D>2 1</PntList2D>");
-  EXPECT_NE(lines_in("a.xml", std::string(kHead) + flat + kTail).find("has no heights"),
-            std::string::npos);
+  EXPECT_EQ(lines_in("a.xml", std::string(kHead) + flat + kTail),
+            "10 20 0 | EPSG:25832without heights");
   std::string odd(kOne);
   odd.replace(odd.find("20 10 3"), 7, "20 10");
   EXPECT_NE(lines_in("a.xml", std::string(kHead) + odd + kTail).find("has 5 numbers"),

@@ -3,7 +3,7 @@
 // Sides of rings are clipped at each surface triangle below them, in shares of the way along the
 // side. The share at which a side crosses an edge is computed from the edge alone, its ends in the
 // order of their keys, so the triangles on both hands give the same bits.
-#include "engine/construct/delaunay/boundary_drape.h"
+#include "engine/construct/delaunay/line_drape.h"
 
 #include <algorithm>
 #include <charconv>
@@ -55,18 +55,25 @@ Decimal with_decimals(double value, double step) {
 
 }  // namespace
 
-BoundaryDrape::BoundaryDrape(const LineSet& rings, const PointBuckets& points) : points_(points) {
-  const AffineMap& map = points.frame().map;
+LineDrape::LineDrape(const LineSet& rings, const LineSet& lines, const PointBuckets& points)
+    : points_(points), rings_(rings.size()) {
+  std::vector<GridBox> boxes;
+  add_sides(rings, boxes);
+  add_sides(lines, boxes);
+  boxes_ = PackedBoxes(std::move(boxes));
+}
+
+void LineDrape::add_sides(const LineSet& set, std::vector<GridBox>& boxes) {
+  const AffineMap& map = points_.frame().map;
   const auto place = [&](const SourcePoint& p) {
     const MapPoint g = map.to_grid({to_double(p.x), to_double(p.y)});
     return GridPoint{static_cast<std::int32_t>(std::lround(g.x)),
                      static_cast<std::int32_t>(std::lround(g.y))};
   };
-  std::vector<GridBox> boxes;
-  for (std::size_t i = 0; i < rings.size(); ++i) {
-    const auto ring = rings.line(i);
-    for (std::size_t k = 1; k < ring.size(); ++k) {
-      const Side side{place(ring[k - 1]), place(ring[k])};
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const auto line = set.line(i);
+    for (std::size_t k = 1; k < line.size(); ++k) {
+      const Side side{place(line[k - 1]), place(line[k])};
       if (side.from != side.to) {
         sides_.push_back(side);
         boxes.push_back(united(box_of(side.from), side.to));
@@ -74,10 +81,9 @@ BoundaryDrape::BoundaryDrape(const LineSet& rings, const PointBuckets& points) :
     }
     ends_.push_back(static_cast<std::uint32_t>(sides_.size()));
   }
-  boxes_ = PackedBoxes(std::move(boxes));
 }
 
-void BoundaryDrape::add(const DelaunayTile& part) {
+void LineDrape::add(const DelaunayTile& part) {
   const Tin& tin = part.tin;
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     if (tin.classes[t] != TriangleClass::kSurface) {
@@ -93,7 +99,7 @@ void BoundaryDrape::add(const DelaunayTile& part) {
 }
 
 /// Clips one side at one triangle.
-void BoundaryDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number) {
+void LineDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number) {
   const Tin& tin = part.tin;
   const Side& side = sides_[number];
   Stretch s{number, 0.0, 1.0};
@@ -133,7 +139,7 @@ void BoundaryDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t nu
   }
 }
 
-void BoundaryDrape::note_crossing(const Side& side, double share) {
+void LineDrape::note_crossing(const Side& side, double share) {
   const auto between = [&](std::int32_t a, std::int32_t b) {
     return a + share * (static_cast<double>(b) - a);
   };
@@ -142,7 +148,7 @@ void BoundaryDrape::note_crossing(const Side& side, double share) {
 }
 
 /// The fixed edge that a point lies on, or nearest to; FixedEdges has one at least.
-std::uint32_t BoundaryDrape::edge_at(MapPoint p) const {
+std::uint32_t LineDrape::edge_at(MapPoint p) const {
   const FixedEdges& fixed = points_.fixed_edges();
   const GridBox box{
       static_cast<std::int32_t>(std::floor(p.x)), static_cast<std::int32_t>(std::floor(p.y)),
@@ -166,7 +172,7 @@ std::uint32_t BoundaryDrape::edge_at(MapPoint p) const {
   return nearest;
 }
 
-LineSet BoundaryDrape::divided_lines() const {
+LineSet LineDrape::divided_lines(bool of_boundary) const {
   const FixedEdges& fixed = points_.fixed_edges();
   const HeightEncoding& heights = points_.frame().heights;
   std::vector<std::pair<std::uint32_t, GridPoint>> cuts;
@@ -191,6 +197,7 @@ LineSet BoundaryDrape::divided_lines() const {
       lines.vertices.push_back(
           source_point({fixed.vertices()[v].position, heights.height(points_.fixed_height(v))}));
     };
+    const std::size_t before = lines.vertices.size();
     put_end(edge.a);
     for (; next < cuts.size() && cuts[next].first == e; ++next) {
       const GridPoint p = cuts[next].second;
@@ -203,15 +210,18 @@ LineSet BoundaryDrape::divided_lines() const {
       }
     }
     put_end(edge.b);
-    lines.ends.push_back(lines.vertices.size());
+    if (of_boundary ? edge.boundary : edge.breakline) {
+      lines.ends.push_back(lines.vertices.size());
+    } else {
+      lines.vertices.resize(before);
+    }
   }
   return lines;
 }
 
 /// The height of a triangle where a side is so far along; where that rounds to a corner the height of
 /// the vertex, so that a ring meets points and breaklines at their own heights.
-double BoundaryDrape::height_in(const Tin& tin, TriangleId t, const Side& side,
-                                double share) const {
+double LineDrape::height_in(const Tin& tin, TriangleId t, const Side& side, double share) const {
   const HeightEncoding& heights = points_.frame().heights;
   const GridPoint place = rounded(side.from, side.to, share);
   MapPoint c[3];
@@ -242,8 +252,8 @@ double BoundaryDrape::height_in(const Tin& tin, TriangleId t, const Side& side,
 /// Puts the vertices of a side; its last one only where the side ends on the ground. Where the side
 /// goes without ground from one vertex that has some to another, a vertex without stands between.
 /// @param next  The first stretch of the side, and then of the side behind it.
-void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
-                             std::vector<RingVertex>& ring) const {
+void LineDrape::put_side(std::uint32_t number, std::size_t& next,
+                         std::vector<RingVertex>& ring) const {
   const Side& side = sides_[number];
   const double one = tolerance_of(side.from, side.to);
   const auto put = [&](double share, std::optional<double> height, bool on_line = false) {
@@ -278,26 +288,30 @@ void BoundaryDrape::put_side(std::uint32_t number, std::size_t& next,
   }
 }
 
-SourcePoint BoundaryDrape::source_point(const RingVertex& v) const {
+SourcePoint LineDrape::source_point(const RingVertex& v) const {
   const TerrainFrame& frame = points_.frame();
   const MapPoint p = frame.map.to_map(v.position.x, v.position.y);
   return {with_decimals(p.x, frame.map.step_x), with_decimals(p.y, frame.map.step_y),
           with_decimals(v.height.value_or(0.0), frame.height_quantum)};
 }
 
-/// Closes a ring. Where several vertices fall together the height of a fixed edge stands, or else
-/// that of the first.
-void BoundaryDrape::add_ring(std::vector<RingVertex>& ring, LineSet& to) {
-  if (ring.back().position != ring.front().position) {
-    ring.push_back(ring.front());
-  }
+/// Where several vertices fall together the height of a fixed edge stands, or else that of the first.
+void LineDrape::note_heights(const std::vector<RingVertex>& chain) {
   for (const bool on_line : {true, false}) {
-    for (const RingVertex& v : ring) {
+    for (const RingVertex& v : chain) {
       if (v.height && v.on_line == on_line) {
         height_at_.try_emplace(key_of(v.position), *v.height);
       }
     }
   }
+}
+
+/// Closes a ring.
+void LineDrape::add_ring(std::vector<RingVertex>& ring, LineSet& to) {
+  if (ring.back().position != ring.front().position) {
+    ring.push_back(ring.front());
+  }
+  note_heights(ring);
   for (RingVertex& v : ring) {
     if (v.height) {
       v.height = height_at_.at(key_of(v.position));
@@ -308,14 +322,48 @@ void BoundaryDrape::add_ring(std::vector<RingVertex>& ring, LineSet& to) {
   to.ends.push_back(to.vertices.size());
 }
 
-LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
-                           const std::stop_token& stop, const Progress& progress) {
+/// A point keeps its height where a line is rounded to its place.
+void LineDrape::note_points() {
+  std::vector<BucketPoint> batch;
+  for (std::uint64_t first = 0; first < points_.size(); first += kPartPoints) {
+    points_.take(first, std::min(kPartPoints, points_.size() - first), batch);
+    for (const BucketPoint& p : batch) {
+      if (const auto at = height_at_.find(key_of(p.position)); at != height_at_.end()) {
+        at->second = points_.frame().heights.height(p.height);
+      }
+    }
+  }
+}
+
+/// Adds the pieces of a line that have ground.
+void LineDrape::add_line(const std::vector<RingVertex>& line, LineSet& to) const {
+  std::size_t begin = to.vertices.size();
+  const auto end_piece = [&] {
+    if (to.vertices.size() - begin < 2) {
+      to.vertices.resize(begin);
+    } else {
+      to.ends.push_back(to.vertices.size());
+    }
+    begin = to.vertices.size();
+  };
+  for (const RingVertex& v : line) {
+    if (!v.height) {
+      end_piece();
+      continue;
+    }
+    to.vertices.push_back(source_point({v.position, height_at_.at(key_of(v.position))}));
+  }
+  end_piece();
+}
+
+LineDrape::Laid LineDrape::lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
+                               const std::stop_token& stop, const Progress& progress) {
   DelaunayTiler tiler(points_, longest_edge);
   for (std::uint64_t first = 0; first < points_.size(); first += kPartPoints) {
     add(tiler.make(first, std::min(kPartPoints, points_.size() - first), stop));
     if (stretches_.size() + crossings_.size() > most_vertices) {
       throw Error(ErrorCode::resource_exhausted,
-                  "the boundary crosses more than " + std::to_string(most_vertices) +
+                  "the lines without heights cross more than " + std::to_string(most_vertices) +
                       " triangles, which is what a quarter of --memory has room for; give more "
                       "--memory");
     }
@@ -327,18 +375,28 @@ LineSet BoundaryDrape::lay(std::optional<double> longest_edge, std::uint64_t mos
     return std::tie(a.side, a.begin, a.end, a.height_at_begin, a.height_at_end) <
            std::tie(b.side, b.begin, b.end, b.height_at_begin, b.height_at_end);
   });
-  LineSet laid;
+  Laid laid;
   height_at_.clear();
+  std::vector<std::vector<RingVertex>> lines;
   std::size_t next = 0;
   std::uint32_t side = 0;
-  for (const std::uint32_t end : ends_) {
-    std::vector<RingVertex> ring;
-    for (; side < end; ++side) {
-      put_side(side, next, ring);
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    std::vector<RingVertex> chain;
+    for (; side < ends_[i]; ++side) {
+      put_side(side, next, chain);
     }
-    if (!ring.empty()) {
-      add_ring(ring, laid);
+    if (i < rings_ && !chain.empty()) {
+      add_ring(chain, laid.rings);
+    } else if (i >= rings_) {
+      note_heights(chain);
+      lines.push_back(std::move(chain));
     }
+  }
+  if (!lines.empty()) {
+    note_points();
+  }
+  for (const std::vector<RingVertex>& line : lines) {
+    add_line(line, laid.lines);
   }
   return laid;
 }

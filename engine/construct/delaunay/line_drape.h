@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A boundary without heights laid on the surface of the points.
+// Lines without heights, and a boundary without, laid on the surface of the points.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +18,33 @@
 
 namespace ptin {
 
-/// Lays rings on the full TIN of points, part by part. A ring gets a vertex wherever it crosses an
-/// edge of a surface triangle, with the height of the surface there, so that its sides lie in the
+/// Lays rings and lines on the full TIN of points, part by part. They get a vertex wherever they cross
+/// an edge of a surface triangle, with the height of the surface there, so that their sides lie in the
 /// surface. Where there is no surface below a ring (outside of the points, or over long edges) its
-/// vertices have no ground.
-class BoundaryDrape {
+/// vertices have no ground; of lines such parts are left out.
+class LineDrape {
  public:
   using Progress = std::function<void(std::uint64_t done, std::uint64_t total)>;
 
-  /// @param rings   Without heights.
-  /// @param points  Read with these rings among their lines, so that the grid holds them. Borrowed.
-  BoundaryDrape(const LineSet& rings, const PointBuckets& points);
+  /// @param rings, lines  Without heights.
+  /// @param points        Read with these among their lines, so that the grid holds them. Borrowed.
+  LineDrape(const LineSet& rings, const LineSet& lines, const PointBuckets& points);
 
-  /// Lays the rings on all parts of the full TIN.
+  /// Rings with heights, or without ground, vertex by vertex; and pieces of lines with heights.
+  struct Laid {
+    LineSet rings, lines;
+  };
+  /// Lays rings and lines on all parts of the full TIN.
   /// @param longest_edge  As DelaunayTiler.
-  /// @return The rings with heights, or without ground, vertex by vertex.
   /// @throws Error  resource_exhausted  more than `most_vertices` vertices
   ///                as DelaunayTiler::make()
   /// Cost: the triangulation, and the crossings.
-  [[nodiscard]] LineSet lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
-                            const std::stop_token& stop, const Progress& progress = {});
-  /// After lay(): the breaklines of the points, edge by edge, divided where rings cross them. A ring's
-  /// vertex there is off the line by what rounding to the grid moves it, and could miss it else.
-  [[nodiscard]] LineSet divided_lines() const;
+  [[nodiscard]] Laid lay(std::optional<double> longest_edge, std::uint64_t most_vertices,
+                         const std::stop_token& stop, const Progress& progress = {});
+  /// After lay(): the breaklines of the points, or the sides of their boundary, edge by edge, divided
+  /// where rings and lines cross them. A vertex there is off the edge by what rounding to the grid moves
+  /// it, and could miss it else.
+  [[nodiscard]] LineSet divided_lines(bool of_boundary) const;
 
  private:
   /// A side of a ring.
@@ -65,19 +69,24 @@ class BoundaryDrape {
     bool on_line = false;          ///< On a fixed edge.
   };
 
+  void add_sides(const LineSet& set, std::vector<GridBox>& boxes);
   void add(const DelaunayTile& part);
   void add(const DelaunayTile& part, TriangleId t, std::uint32_t side);
   [[nodiscard]] double height_in(const Tin& tin, TriangleId t, const Side& side,
                                  double share) const;
   void put_side(std::uint32_t side, std::size_t& next, std::vector<RingVertex>& ring) const;
   void note_crossing(const Side& side, double share);
+  void note_heights(const std::vector<RingVertex>& chain);
   void add_ring(std::vector<RingVertex>& ring, LineSet& to);
+  void note_points();
+  void add_line(const std::vector<RingVertex>& line, LineSet& to) const;
   [[nodiscard]] std::uint32_t edge_at(MapPoint p) const;
   [[nodiscard]] SourcePoint source_point(const RingVertex& v) const;
 
   const PointBuckets& points_;
   std::vector<Side> sides_;
-  std::vector<std::uint32_t> ends_;  ///< Of each ring: one past its last side.
+  std::vector<std::uint32_t> ends_;  ///< Of each ring, then of each line: one past its last side.
+  std::size_t rings_ = 0;
   PackedBoxes boxes_;
   std::vector<Stretch> stretches_;
   std::vector<LineCrossing> crossings_;
