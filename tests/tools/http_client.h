@@ -19,6 +19,15 @@
 
 namespace ptin::tools::testing {
 
+/// Longer than any machine takes: a deadline that no test reaches but those that shorten it.
+inline constexpr std::chrono::milliseconds kUnhurried{600000};
+[[nodiscard]] inline http::Limits unhurried_limits() {
+  http::Limits limits;
+  limits.reading = limits.queueing = limits.computing = kUnhurried;
+  limits.writing = limits.idle = kUnhurried;
+  return limits;
+}
+
 struct HttpAnswer {
   int status = 0;
   std::map<std::string, std::string> headers;  ///< Names in lower case.

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "tests/tools/http_client.h"
 #include "tools/http/problem.h"
 #include "tools/http/server.h"
 
@@ -123,17 +124,12 @@ class MadeService : public http::Service {
   std::string remote_;
 };
 
-/// Longer than any machine takes: a deadline that no test reaches but those that shorten it.
-inline constexpr milliseconds kUnhurried{600000};
-
 /// Few of everything, and time for all of it.
 inline Limits small_limits() {
-  Limits limits;
+  Limits limits = unhurried_limits();
   limits.threads = 2;
   limits.waiting = 1;
   limits.connections = 8;
-  limits.reading = limits.queueing = limits.computing = kUnhurried;
-  limits.writing = limits.idle = kUnhurried;
   return limits;
 }
 

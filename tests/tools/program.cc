@@ -117,9 +117,9 @@ std::uint64_t signals_of(const std::string& status, const std::string& set) {
 }
 
 /// Waits until a process takes a signal in its own way, by a handler or by a thread that waits for
-/// it: before that the signal would end it untidily.
+/// it, or has ended: before that the signal would end it untidily.
 void await_readiness(pid_t child, int signal) {
-  for (int tries = 0; signal != SIGKILL && tries < 5000; ++tries) {
+  while (signal != SIGKILL && !has_ended(child)) {
     const std::string status = read_file("/proc/" + std::to_string(child) + "/status");
     const std::uint64_t taken = signals_of(status, "SigCgt:") | signals_of(status, "SigBlk:");
     if ((taken >> (signal - 1) & 1) != 0) return;

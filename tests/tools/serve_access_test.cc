@@ -20,6 +20,7 @@ namespace ip = boost::asio::ip;
 
 serve::ServeOptions with_token(const TestFolder& folder) {
   serve::ServeOptions options;
+  options.http = unhurried_limits();
   options.files = {{"dem", built(folder, "mountains_257.tif")}};
   options.http.threads = 2;
   options.version = "test";

@@ -24,6 +24,7 @@ class ServeAntimeridian : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TestFolder>();
     serve::ServeOptions options;
+    options.http = unhurried_limits();
     options.version = "test";
     const auto add = [&](const std::string& id, const RasterRecipe& recipe) {
       const std::string name = folder_->file(id);

@@ -110,7 +110,9 @@ TEST_F(ServeElsewhere, HoldsItsTerrainInItsExtent) {
 }
 
 TEST_F(ServeElsewhere, HasTilesWhereNoPoleIs) {
-  serve::ServeOptions options;  // Finding out which tiles there are takes more than 4 MiB.
+  serve::ServeOptions options;
+  options.http = unhurried_limits();
+  // Finding out which tiles there are takes more than 4 MiB.
   options.files = files_;
   ServedTerrains served(options);
   const auto get = [&](const std::string& target) { return served.get("/collections/" + target); };

@@ -11,6 +11,7 @@ namespace ptin::tools::testing {
 
 serve::ServeOptions serve_options(const TestFolder& folder) {
   serve::ServeOptions options;
+  options.http = unhurried_limits();
   options.files = {{"mountains", built(folder, "mountains_257.tif", "mountains.ptin")},
                    {"coast", built(folder, "coast_257.tif", "coast.ptin")}};
   options.http.threads = 2;
@@ -100,6 +101,7 @@ std::unique_ptr<ServedTerrains> ServeElsewhere::served_;
 void ServeElsewhere::SetUpTestSuite() {
   folder_ = std::make_unique<TestFolder>();
   serve::ServeOptions options;
+  options.http = unhurried_limits();
   options.version = "test";
   options.question.question_memory = 4 << 20;
   const auto add = [&](const std::string& id, int epsg, double west, double north, double pixel) {

@@ -115,6 +115,25 @@ TEST(ServeSmall, SendsShorterPiecesWhereMemoryIsShort) {
   }
 }
 
+/// What is held and what is sent are there together: 280 bytes a vertex.
+TEST(ServeSmall, SendsPiecesUntilMemoryIsFull) {
+  TestFolder folder;
+  serve::ServeOptions options = serve_options(folder);
+  options.question.question_memory = 20 << 20;
+  ServedTerrains served(options);
+  json have = json::array();
+  double error = 1.0;
+  for (int pieces = 0; error > 0 && pieces < 40; ++pieces) {
+    const HttpAnswer answer = served.post("/collections/mountains/stream", {{"have", have}});
+    ASSERT_EQ(answer.status, 200) << answer.body << have;
+    const json splits = json::parse(answer.header("ptin-splits"));
+    ASSERT_GT(splits, 0);
+    have.push_back({{"splits", splits}});
+    error = json::parse(answer.header("ptin-certified-error")).get<double>();
+  }
+  EXPECT_EQ(error, 0.0);
+}
+
 TEST_F(Serve, RefusesWhatAReceiverHadOfAnotherFile) {
   const HttpAnswer answer = served_->post(
       in("mountains", "stream"),

@@ -67,23 +67,6 @@ std::uint64_t most_bytes(const Asked& asked) {
   return asked_for;
 }
 
-/// The bytes of a piece. It may end on any frame: where so many splits take more than the memory of
-/// a question, there are fewer in it.
-StreamSummary write_piece(const Asked& asked, StreamRequest& request, std::string& text) {
-  constexpr std::uint64_t kFewSplits = 4096;
-  while (true) {
-    try {
-      return asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
-        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      });
-    } catch (const Error& error) {
-      const bool is_large = error.code() == ErrorCode::resource_exhausted && text.empty();
-      if (!is_large || request.most_splits <= kFewSplits) throw;
-      request.most_splits /= 2;
-    }
-  }
-}
-
 }  // namespace
 
 std::span<const ParameterFact> stream_parameters() noexcept { return kStreamParameters; }
@@ -101,6 +84,8 @@ http::Response answer_stream(const Asked& asked) {
   request.tolerance = wanted.error;
   request.held = held_of(asked);
   request.limits = engine_limits(asked, 2 * most);  // While it grows, the text is there twice.
+  // A piece may end on any frame, where that is worth the work.
+  request.fewest_splits = 1024;
   // No more than so many bytes hold and so much memory takes: those behind the cut are not looked for.
   constexpr std::uint64_t kMemoryOfSplit = 512;
   request.most_splits =
@@ -109,7 +94,10 @@ http::Response answer_stream(const Asked& asked) {
   request.metadata = tools::metadata_of_stream(asked.terrain().store(), wanted);
 
   std::string text;
-  const StreamSummary summary = write_piece(asked, request, text);
+  const StreamSummary summary =
+      asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
+        text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      });
   http::Response response = text_response(std::move(text), "application/vnd.ptin.stream");
   response.add("Ptin-Splits", std::to_string(summary.splits));
   response.add("Ptin-Fingerprint", asked.collection->fingerprint);

@@ -55,6 +55,11 @@ class QueryContext {
     }
   }
 
+  /// Whether admit() would let so many bytes in.
+  [[nodiscard]] bool fits(std::uint64_t bytes) const noexcept {
+    return bytes <= limits_.memory_bytes;
+  }
+
   /// What the limit leaves beside `bytes` that the query holds: the limit for a part of the query
   /// that has a context of its own.
   /// @throws Error as admit()

@@ -39,12 +39,13 @@ struct RankedPage {
 class Search {
  public:
   Search(const RecordSource& source, const AttributePredicate& predicate, Growth growth,
-         std::uint64_t fixed_bytes, QueryContext& context)
+         std::uint64_t fixed_bytes, QueryContext& context, const LeftOut& left_out)
       : source_(source),
         predicate_(predicate),
         growth_(growth),
         fixed_bytes_(fixed_bytes),
-        context_(context) {}
+        context_(context),
+        left_out_(left_out) {}
 
   /// Looks at all records with error above `bound`. True when no other record can be among the
   /// first.
@@ -92,14 +93,20 @@ class Search {
   }
 
   /// Reads the next pages. While records are missing: as many pages as could hold the missing ones.
-  /// Once there are enough records: an eighth of the pages read so far, 16 at least.
+  /// Once there are enough records: an eighth of the pages read so far, 16 at least, and of those
+  /// behind the first as many as there is memory for.
   std::size_t read_some(const std::vector<RankedPage>& pages, std::size_t next) {
     const std::uint64_t room = growth_.most - std::min(growth_.most, grown_);
     const std::uint64_t missing = room / growth_.by_one() + room % growth_.by_one();
     const std::size_t least = next + std::max(kLeastPages, read_.size() / 8);
     std::vector<PageId> ids;
     std::uint64_t records = 0;
-    while (next < pages.size() && (records < missing || (missing == 0 && next < least))) {
+    const auto bytes_with = [&](const RankedPage& page) {
+      return fixed_bytes_ + refinement_bytes(found_.size() + records + page.records);
+    };
+    while (next < pages.size() &&
+           (records < missing || (missing == 0 && next < least &&
+                                  (ids.empty() || context_.fits(bytes_with(pages[next])))))) {
       ids.push_back(pages[next].id);
       records += pages[next].records;
       ++next;
@@ -108,6 +115,11 @@ class Search {
     std::sort(ids.begin(), ids.end());
     const auto before = static_cast<std::ptrdiff_t>(found_.size());
     read_pages(source_.store, ids, predicate_, context_, found_);
+    if (left_out_.is) {
+      found_.erase(std::remove_if(found_.begin() + before, found_.end(),
+                                  [this](const PendingSplit& s) { return left_out_.is(s.u); }),
+                   found_.end());
+    }
     std::for_each(found_.begin() + before, found_.end(),
                   [this](const PendingSplit& s) { grown_ += growth_.by(s); });
     const auto middle = static_cast<std::ptrdiff_t>(read_.size());
@@ -151,6 +163,7 @@ class Search {
   Growth growth_;
   std::uint64_t fixed_bytes_;
   QueryContext& context_;
+  const LeftOut& left_out_;
   std::vector<PendingSplit> found_, order_;
   std::vector<PageId> read_;      ///< Ascending.
   std::uint64_t grown_ = 0;       ///< By all of found_.
@@ -163,9 +176,11 @@ class Search {
 }  // namespace
 
 FirstRecords first_records(const RecordSource& source, const AttributePredicate& predicate,
-                           Growth growth, std::uint64_t fixed_bytes, QueryContext& context) {
-  Search search(source, predicate, growth, fixed_bytes, context);
-  const std::uint64_t fewest = std::max<std::uint64_t>(growth.most / growth.by_one(), 1);
+                           Growth growth, std::uint64_t fixed_bytes, QueryContext& context,
+                           const LeftOut& left_out) {
+  Search search(source, predicate, growth, fixed_bytes, context, left_out);
+  const std::uint64_t fewest =
+      std::max<std::uint64_t>(growth.most / growth.by_one(), 1) + left_out.count;
   for (std::uint64_t target = fewest;; target *= 4) {
     const bool all = target >= source.store.record_count();
     const double bound = all ? -1.0 : bound_exceeded_by(source.store.error_bins(), target);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/query/select/accounting.h"
@@ -61,10 +62,17 @@ struct FirstRecords {
   double largest_error_left = -1.0;
 };
 
+/// Records that are as if they were not in the file, and how many there are at most.
+struct LeftOut {
+  std::function<bool(VertexKey)> is;  ///< Null: none is.
+  std::uint64_t count = 0;
+};
+
 /// Finds the longest prefix of the total order of the records for which `predicate` is true that
 /// adds no more than `growth` says: of vertices exactly as many, unless there are fewer; of
 /// triangles as many or one less. Pages are read in the order of falling largest error. A page whose largest error is below the smallest error
-/// taken is not read, but for an eighth more pages (16 at least) that are read ahead. The file's
+/// taken is not read, but for an eighth more pages (16 at least) that are read ahead, as far as the memory
+/// allows. The file's
 /// table of errors says where to begin; it only saves work, and may be wrong.
 /// @param fixed_bytes  What the query holds besides its records (T0).
 /// @throws Error resource_exhausted (before the pages concerned are read), corruption, io_error,
@@ -73,6 +81,7 @@ struct FirstRecords {
 /// terrain that the predicate leaves).
 [[nodiscard]] FirstRecords first_records(const RecordSource& source,
                                          const AttributePredicate& predicate, Growth growth,
-                                         std::uint64_t fixed_bytes, QueryContext& context);
+                                         std::uint64_t fixed_bytes, QueryContext& context,
+                                         const LeftOut& left_out = {});
 
 }  // namespace ptin

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/key_table.h"
+#include "engine/large_array.h"
 #include "engine/mesh/split.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
@@ -30,7 +31,15 @@ constexpr std::size_t kMostMetadata = std::size_t{1} << 20;
 /// A mesh that grows split by split, and the place of each vertex.
 class GrowingMesh {
  public:
-  GrowingMesh(const Tin& base, std::uint64_t splits) : tin_(base) {
+  GrowingMesh(const Tin& base, std::uint64_t splits) {
+    const auto copy = [](const auto& from, auto& to, std::uint64_t more) {
+      reserve_large(to, from.size() + more);
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    copy(base.vertices, tin_.vertices, splits);
+    copy(base.has_height, tin_.has_height, splits);
+    copy(base.triangles, tin_.triangles, 2 * splits);
+    copy(base.classes, tin_.classes, 2 * splits);
     ids_.reserve(base.vertices.size() + splits);
     for (VertexId v = 0; v < base.vertices.size(); ++v) {
       ids_.insert(key_of(base.position(v)), v);
@@ -38,6 +47,13 @@ class GrowingMesh {
   }
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
+
+  /// Bytes of a mesh of so many vertices.
+  [[nodiscard]] static std::uint64_t bytes_of(std::uint64_t vertices) noexcept {
+    constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + sizeof(std::uint8_t);
+    constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);
+    return vertices * (kVertexBytes + 2 * kTriangleBytes) + KeyTable::bytes_for(vertices);
+  }
 
   SplitResult apply(const PendingSplit& s, const QueryContext& context) {
     const auto u = static_cast<VertexId>(tin_.vertices.size());
@@ -101,6 +117,33 @@ class Levels {
   Star star_;
 };
 
+/// Most bytes that a stream takes beside T0: two meshes of all vertices, the splits, and for each
+/// vertex 42 of its place on the curve (SplitCode), 16 of marks, and 36 of a frame that holds a ninth
+/// of them, in two orders. What grows is counted twice.
+std::uint64_t bytes_of_sending(std::uint64_t held, std::uint64_t splits) noexcept {
+  constexpr std::uint64_t kBesideMesh = 96;
+  return 2 * GrowingMesh::bytes_of(held + splits) + kBesideMesh * (held + splits) +
+         splits * sizeof(PendingSplit);
+}
+
+/// The most splits that can be sent in so much memory.
+std::uint64_t splits_within(std::uint64_t held, std::uint64_t memory_bytes) noexcept {
+  std::uint64_t fit = 0, too_many = std::uint64_t{1} << 32;
+  while (too_many - fit > 1) {
+    const std::uint64_t middle = fit + (too_many - fit) / 2;
+    (bytes_of_sending(held, middle) <= memory_bytes ? fit : too_many) = middle;
+  }
+  return fit;
+}
+
+/// Keeps the first splits of the total order.
+void keep_first(std::vector<PendingSplit>& splits, std::uint64_t most) {
+  if (most >= splits.size()) return;
+  const auto last = splits.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(splits.begin(), last, splits.end(), is_before);
+  splits.erase(last, splits.end());
+}
+
 /// A split of a level, and the number of its w.
 struct Ordered {
   std::uint32_t rank;
@@ -121,7 +164,8 @@ class Writer {
 
   StreamSummary run() {
     const auto start = std::chrono::steady_clock::now();
-    const Tin base = base_mesh();
+    admit_what_is_told();
+    Tin base = base_mesh();
     std::vector<PendingSplit> splits = missing_splits(base);
     store_.pages().check_unchanged();
     summary_.base_vertices = base.vertices.size();
@@ -133,6 +177,7 @@ class Writer {
     summary_.certificate = certificate_from(splits, 0);
     GrowingMesh mesh(base, splits.size());
     Levels levels(base, splits.size());
+    base = {};
     for (std::size_t at = 0; at < splits.size();) {
       context_.check_stop();
       const std::uint64_t share = mesh.tin().vertices.size() / kShare;
@@ -153,13 +198,18 @@ class Writer {
   }
 
  private:
+  void admit_what_is_told() const;
   [[nodiscard]] Tin base_mesh();
   [[nodiscard]] std::vector<PendingSplit> missing_splits(const Tin& base);
   [[nodiscard]] Certificate certificate_from(std::span<const PendingSplit> splits,
                                              std::size_t next) const;
+  [[nodiscard]] std::vector<PendingSplit> all_of_pages(const AttributePredicate& predicate,
+                                                       std::span<const PageId> pages,
+                                                       const LeftOut& held);
+  [[nodiscard]] std::vector<PageId> pages_of(const AttributePredicate& predicate);
   [[nodiscard]] std::vector<PendingSplit> first_of(const AttributePredicate& predicate,
-                                                   std::uint64_t most, std::uint64_t held,
-                                                   std::uint64_t fixed_bytes, std::uint64_t meshes);
+                                                   std::uint64_t most, const LeftOut& held,
+                                                   std::uint64_t fixed_bytes);
   void send(std::span<const std::byte> bytes) {
     sink_(bytes);
     summary_.bytes += bytes.size();
@@ -224,50 +274,63 @@ void sort_by_rank(std::span<PendingSplit> splits) {
   std::copy(sorted.begin(), sorted.end(), splits.begin());
 }
 
+/// What the servings say that they brought is known before anything is read.
+void Writer::admit_what_is_told() const {
+  std::uint64_t told = 0;
+  for (const StreamHeld& held : request_.held) {
+    if (held.splits > store_.record_count()) return;
+    told += held.splits;
+  }
+  told = std::min(told, store_.record_count());
+  const std::uint64_t least =
+      std::min(request_.fewest_splits.value_or(1), store_.record_count() - told);
+  context_.admit(bytes_of_sending(terrain_.t0().vertices.size() + told, least));
+}
+
 /// The mesh that the receiver has, numbered as the receiver numbers it: T0, and the records of all
 /// servings. Each serving is closed under dependency together with those before it.
 Tin Writer::base_mesh() {
   Refinement refinement(terrain_.t0());
   for (const StreamHeld& held : request_.held) {
     const PredicatePtr predicate = held.predicate ? held.predicate : everything();
-    const std::uint64_t fixed = refinement_bytes(refinement.tin().vertices.size());
-    // Of the first records of the predicate those that earlier servings brought are dropped: at
-    // most as many as they brought.
-    std::vector<PendingSplit> splits =
-        first_of(*predicate, held.splits, refinement.tin().vertices.size(), fixed, 1);
-    // Before cutting, since a serving counts the splits that it sent, without those that the
-    // receiver had by then.
-    std::erase_if(splits, [&](const PendingSplit& s) { return refinement.find(s.u) != kNone; });
-    if (held.splits < splits.size()) {
-      const auto last = splits.begin() + static_cast<std::ptrdiff_t>(held.splits);
-      std::nth_element(splits.begin(), last, splits.end(), is_before);
-      splits.erase(last, splits.end());
+    const std::uint64_t vertices = refinement.tin().vertices.size();
+    // A serving counts the splits that it sent, without those that the receiver had by then.
+    const LeftOut before{[&](VertexKey u) { return refinement.find(u) != kNone; }, vertices};
+    const std::uint64_t fixed = refinement_bytes(vertices);
+    if (held.splits >= store_.record_count() - std::min(store_.record_count(), vertices)) {
+      const std::vector<PageId> pages = pages_of(*predicate);
+      context_.admit(fixed + refinement_bytes(most_records(store_, pages)));
+      std::vector<PendingSplit> splits = all_of_pages(*predicate, pages, before);
+      keep_first(splits, held.splits);
+      refinement.apply(splits, context_);
+    } else {
+      refinement.apply(first_of(*predicate, held.splits, before, fixed), context_);
     }
-    refinement.apply(splits, context_);
   }
   return stream::numbered_by_key(refinement.tin());
 }
 
-/// The records for which a predicate is true: all, or where few are wanted at least the first
-/// `most` that `held` ones do not have. Notes the largest error that is left out.
-/// @param meshes  Of the records, that the query will hold.
+std::vector<PageId> Writer::pages_of(const AttributePredicate& predicate) {
+  std::vector<PageId> pages;
+  source_.index.search(predicate, pages, context_.cost.io);
+  context_.check_stop();
+  return pages;
+}
+
+/// The records of these pages for which a predicate is true and that are not held.
+std::vector<PendingSplit> Writer::all_of_pages(const AttributePredicate& predicate,
+                                               std::span<const PageId> pages, const LeftOut& held) {
+  std::vector<PendingSplit> splits;
+  read_pages(store_, pages, predicate, context_, splits);
+  std::erase_if(splits, [&](const PendingSplit& s) { return held.is(s.u); });
+  return splits;
+}
+
+/// The first `most` records for which a predicate is true and that are not held. Notes the largest error
+/// that is left out.
 std::vector<PendingSplit> Writer::first_of(const AttributePredicate& predicate, std::uint64_t most,
-                                           std::uint64_t held, std::uint64_t fixed_bytes,
-                                           std::uint64_t meshes) {
-  left_out_ = -1.0;
-  const std::uint64_t all = store_.record_count();
-  if (most >= all - std::min(all, held)) {
-    std::vector<PageId> pages;
-    source_.index.search(predicate, pages, context_.cost.io);
-    context_.check_stop();
-    context_.admit(fixed_bytes + meshes * refinement_bytes(most_records(store_, pages)));
-    std::vector<PendingSplit> splits;
-    read_pages(store_, pages, predicate, context_, splits);
-    return splits;
-  }
-  const std::uint64_t wanted = most + held;
-  const std::uint64_t beside = fixed_bytes + (meshes - 1) * refinement_bytes(wanted);
-  FirstRecords first = first_records(source_, predicate, Growth{wanted}, beside, context_);
+                                           const LeftOut& held, std::uint64_t fixed_bytes) {
+  FirstRecords first = first_records(source_, predicate, Growth{most}, fixed_bytes, context_, held);
   left_out_ = first.largest_error_left;
   return std::move(first.splits);
 }
@@ -276,22 +339,26 @@ std::vector<PendingSplit> Writer::first_of(const AttributePredicate& predicate, 
 /// those that are held, and so is any first part of them.
 std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
   const PredicatePtr wanted = request_.wanted ? request_.wanted : everything();
-  const std::uint64_t base_bytes = 2 * refinement_bytes(base.vertices.size());
-  std::vector<PendingSplit> splits =
-      first_of(*wanted, request_.most_splits, base.vertices.size(), base_bytes, 2);
-  if (!request_.held.empty()) {
-    KeyTable held(base.vertices.size());
-    for (VertexId v = 0; v < base.vertices.size(); ++v) {
-      held.insert(key_of(base.position(v)), v);
-    }
-    std::erase_if(splits,
-                  [&](const PendingSplit& s) { return held.find(s.u) != KeyTable::kAbsent; });
+  const std::uint64_t vertices = base.vertices.size(), all = store_.record_count();
+  KeyTable ids(vertices);
+  for (VertexId v = 0; v < vertices; ++v) ids.insert(key_of(base.position(v)), v);
+  const LeftOut held{[&](VertexKey u) { return ids.find(u) != KeyTable::kAbsent; }, vertices};
+  const std::uint64_t left = all - std::min(all, vertices - terrain_.t0().vertices.size());
+  const std::uint64_t fit = splits_within(vertices, request_.limits.memory_bytes);
+  const std::uint64_t most =
+      std::min(request_.most_splits, std::max(fit, request_.fewest_splits.value_or(all)));
+  left_out_ = -1.0;
+  std::vector<PendingSplit> splits;
+  if (most >= left) {
+    const std::vector<PageId> pages = pages_of(*wanted);
+    context_.admit(bytes_of_sending(vertices, std::min(most_records(store_, pages), left)));
+    splits = all_of_pages(*wanted, pages, held);
+  } else {
+    splits = first_of(*wanted, most, held, GrowingMesh::bytes_of(vertices));
+    context_.admit(bytes_of_sending(vertices, splits.size()));
   }
+  splits.shrink_to_fit();
   std::sort(splits.begin(), splits.end(), is_before);
-  if (request_.most_splits < splits.size()) {
-    left_out_ = std::max<double>(left_out_, splits[request_.most_splits].error);
-    splits.resize(request_.most_splits);
-  }
   return splits;
 }
 

@@ -42,6 +42,9 @@ struct StreamRequest {
   std::vector<StreamHeld> held;
   /// Most splits to send; the most important ones are sent.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
+  /// Where `most_splits` take more than the memory, as many are sent as it holds, but these at least;
+  /// none: all of them.
+  std::optional<std::uint64_t> fewest_splits;
   /// Most bytes: the stream is cut behind the last frame that ends within them, and has no end. T0
   /// and one frame of splits are sent whatever they take, so that every stream brings something.
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
@@ -69,10 +72,11 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// ninth of what has arrived waits in a frame that is not whole. The certificate of a frame is that
 /// of a refinement by `wanted` that is cut there. It holds in the region asked for; everywhere when
 /// `wanted` is everything or a tolerance alone.
-/// @throws Error invalid_argument, resource_exhausted (before a page is read), corruption,
+/// @throws Error invalid_argument, resource_exhausted (before anything is sent), corruption,
 /// io_error, cancelled; what `sink` throws
 /// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
-/// vertices, known beforehand. With `most_splits`, and of servings that were cut, pages are read
+/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings tell
+/// their splits, from what the request says alone. With `most_splits`, and of servings that were cut, pages are read
 /// about as far down in errors as their splits are (first_records(), select/total_order.h).
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);

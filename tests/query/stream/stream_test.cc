@@ -303,6 +303,51 @@ TEST(Stream, RefusesMoreThanItsMemoryBeforeSendingAnything) {
   EXPECT_FALSE(sent_some);
 }
 
+/// A piece after the other, each as large as the memory allows.
+TEST(Stream, SendsAsManyAsItsMemoryHolds) {
+  const Asked asked(2);
+  const std::uint64_t all = asked.hierarchy.records.size();
+  StreamReader reader("stream");
+  StreamRequest request;
+  request.fewest_splits = 1;
+  // Enough to hold all, and not to send all at once.
+  request.limits.memory_bytes = 310 * (all + asked.hierarchy.t0.vertices.size());
+  int pieces = 0;
+  for (std::uint64_t had = 0; had < all; had += reader.splits(), ++pieces) {
+    ASSERT_LT(pieces, 20);
+    if (pieces > 0) reader.begin_next();
+    StreamSummary summary;
+    reader.feed(sent(asked.store, request, &summary));
+    ASSERT_GT(summary.splits, 0U);
+    ASSERT_EQ(reader.tin().vertices.size(),
+              asked.hierarchy.t0.vertices.size() + had + summary.splits);
+    request.held.push_back({nullptr, summary.splits});
+  }
+  EXPECT_GT(pieces, 1);
+  EXPECT_EQ(canonical(reader.tin()), canonical(asked.hierarchy.full));
+}
+
+/// True everywhere, and counts who asks.
+class CountedPredicate final : public AttributePredicate {
+ public:
+  [[nodiscard]] bool holds(const Attributes&) const noexcept override {
+    ++asked;
+    return true;
+  }
+  mutable std::uint64_t asked = 0;
+};
+
+TEST(Stream, RefusesWhatIsHeldWithoutReadingIt) {
+  const Asked asked(2);
+  const auto counted = std::make_shared<CountedPredicate>();
+  StreamRequest request;
+  request.fewest_splits = 1;
+  request.held = {{counted, asked.hierarchy.records.size() / 2}};
+  request.limits.memory_bytes = 100 * asked.hierarchy.records.size();
+  EXPECT_THROW(sent(asked.store, request), Error);
+  EXPECT_EQ(counted->asked, 0U);
+}
+
 TEST(Stream, StopsWhenCancelled) {
   const Asked asked(2);
   std::stop_source stop;
