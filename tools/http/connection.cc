@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/write.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/read_size.hpp>
 #include <boost/beast/http/error.hpp>
-#include <boost/beast/http/read.hpp>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -34,6 +34,8 @@ constexpr int kMostUnsentBytes = 128 << 10;
 constexpr std::size_t kFirstBodyBytes = std::size_t{4} << 10;
 /// A body of so many bytes is read to its end though the request is refused: the connection goes on.
 constexpr std::uint64_t kMostDroppedBody = std::uint64_t{64} << 10;
+/// The size of a chunk, and the ends of lines around it.
+constexpr std::uint64_t kChunkLine = 20;
 
 std::string lower(std::string_view text) {
   std::string low(text);
@@ -65,6 +67,9 @@ void Connection::start(bool is_extra) {
   // Where the system does not know it, it keeps its own bound.
   static_cast<void>(::setsockopt(socket_.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT,
                                  &kMostUnsentBytes, sizeof kMostUnsentBytes));
+  Status status;
+  socket_.non_blocking(true, status);
+  if (status) return close();
   wait_for_request(host_.limits.reading);
 }
 
@@ -85,54 +90,135 @@ std::optional<Connection::Clock::time_point> Connection::waits_since() const {
 
 // --- reading
 
+/// One wait at once, whatever it is for by the time that it ends.
+void Connection::wait_for_bytes() {
+  if (awaits_bytes_) return;
+  socket_.async_wait(boost::asio::ip::tcp::socket::wait_read,
+                     [self = shared_from_this()](const Status& status) {
+                       self->awaits_bytes_ = false;
+                       if (status) return self->close();
+                       self->look_at_bytes();
+                     });
+  awaits_bytes_ = true;
+}
+
+void Connection::look_at_bytes() {
+  switch (state_) {
+    case State::kIdle:
+      return begin_request();
+    case State::kReading:
+      return read_more();
+    case State::kComputing:
+      return look_for_hang_up();
+    case State::kLingering:
+      return drop_what_comes();
+    case State::kWriting:
+    case State::kClosed:
+      return;
+  }
+}
+
 void Connection::wait_for_request(milliseconds most) {
   state_ = State::kIdle;
   has_head_ = false;
   waits_since_ = Clock::now();
-  if (buffer_.size() > 0) return read_head();
+  if (buffer_.size() > 0) return begin_request();
   if (buffer_.capacity() > kFirstBodyBytes) buffer_.shrink_to_fit();
   set_deadline(most, [this] { close(); });
-  socket_.async_wait(boost::asio::ip::tcp::socket::wait_read,
-                     [self = shared_from_this()](const Status& status) {
-                       if (status || self->state_ != State::kIdle) return self->close();
-                       self->read_head();
-                     });
+  wait_for_bytes();
 }
 
-void Connection::read_head() {
+void Connection::begin_request() {
   state_ = State::kReading;
-  late_ = is_short_ = false;
+  is_short_ = false;
+  framing_ = 0;
   parser_.emplace();
+  parser_->eager(false);
   parser_->header_limit(
       static_cast<std::uint32_t>(host_.limits.request_line_bytes + host_.limits.header_bytes));
   parser_->body_limit(host_.limits.body_bytes);
-  set_deadline(host_.limits.reading, [this] {
-    late_ = true;
-    socket_.cancel();
-  });
-  beast_http::async_read_header(
-      socket_, buffer_, *parser_,
-      [self = shared_from_this()](const Status& status, std::size_t) { self->take_head(status); });
+  set_reading_deadline();
+  if (buffer_.size() == 0) return read_more();
+  // What came together is answered in turn with what others sent, and not from within the last answer.
+  boost::asio::post(socket_.get_executor(), [self = shared_from_this()] { self->parse(); });
 }
 
-void Connection::take_head(const Status& status) {
-  if (status) return refuse_reading(status);
-  const auto& head = parser_->get();
-  if (head.target().size() + head.method_string().size() > host_.limits.request_line_bytes) {
-    return refuse_reading(beast_http::error::header_limit);
+/// The timer is for who sends nothing; each step looks at the clock itself.
+void Connection::set_reading_deadline() {
+  read_by_ = Clock::now() + host_.limits.reading;
+  set_deadline(host_.limits.reading, [this] { refuse_late(); });
+}
+
+/// One read, so that others have their turn before the next.
+void Connection::read_more() {
+  const std::size_t room = boost::beast::read_size(buffer_, kPieceBytes);
+  if (room == 0) return refuse(problem_of_head(beast_http::error::buffer_overflow));
+  Status status;
+  const std::size_t bytes = socket_.read_some(buffer_.prepare(room), status);
+  if (status == boost::asio::error::would_block || status == boost::asio::error::try_again) {
+    return wait_for_bytes();
   }
+  if (status) return close();  // Nobody is there to be told.
+  buffer_.commit(bytes);
+  parse();
+}
+
+/// All that has arrived, as far as there is memory and time for it.
+void Connection::parse() {
+  while (state_ == State::kReading) {
+    if (Clock::now() >= read_by_) return refuse_late();
+    if (has_head_ && !make_room_for_body()) return wait_for_memory();
+    const bool had_head = has_head_;
+    const Status status = parse_next();
+    if (status == beast_http::error::need_more) return wait_for_bytes();
+    if (status && status != beast_http::error::need_buffer) return refuse(problem_of_head(status));
+    if (!had_head && !take_head()) return;
+    if (had_head && parser_->is_done()) return take_body();
+  }
+}
+
+/// The head, or else a chunk's line, the trailers or a part of the body.
+Connection::Status Connection::parse_next() {
+  Status status = beast_http::error::need_more;
+  if (buffer_.size() == 0) return status;
+  const std::uint64_t before = parser_->get().body().arrived;
+  const std::size_t used = parser_->put(buffer_.data(), status);
+  buffer_.consume(used);
+  const std::uint64_t beside = used - (parser_->get().body().arrived - before);
+  if (has_head_ && beside > kChunkLine) framing_ += beside - kChunkLine;
+  if (framing_ > host_.limits.header_bytes) status = beast_http::error::header_limit;
+  return status;
+}
+
+/// Whether a body is to be read.
+bool Connection::take_head() {
+  const auto& head = parser_->get();
   std::size_t lines = 0;
   for (const auto& field : head) lines += field.name_string().size() + field.value().size() + 4;
-  if (lines > host_.limits.header_bytes) return refuse_reading(beast_http::error::header_limit);
+  if (head.target().size() + head.method_string().size() > host_.limits.request_line_bytes ||
+      lines > host_.limits.header_bytes) {
+    refuse(problem_of_head(beast_http::error::header_limit));
+    return false;
+  }
   request_ = request_of_head();
   has_head_ = true;
-  if (const auto problem = problem_of_framing()) return refuse(*problem);
+  if (const auto problem = problem_of_framing()) {
+    refuse(*problem);
+    return false;
+  }
   check_head();
-  if (parser_->is_done()) return take_body({});
+  if (parser_->is_done()) {
+    take_body();
+    return false;
+  }
+  if (refusal_ && !is_worth_reading()) {
+    Response response = std::move(*refusal_);
+    write(std::move(response), true);
+    return false;
+  }
   const bool is_quick = request_->is_parsed && host_.service.is_quick(*request_);
   parser_->get().body().is_dropped = refusal_.has_value() || is_quick;
-  if (refusal_) return refuse_before_body();
-  begin_body();
+  return begin_body();
 }
 
 /// What a proxy before this server might read in another way: it would take the body of one request
@@ -203,31 +289,24 @@ void Connection::check_head() {
   }
 }
 
-void Connection::refuse_before_body() {
+/// Whether the body of a refused request is read to its end, so that the connection goes on.
+bool Connection::is_worth_reading() const {
   const auto length = parser_->content_length();
-  const bool is_announced = parser_->get().count("Expect") != 0;
-  if (length && *length <= kMostDroppedBody && !is_announced) return begin_body();
-  Response response = std::move(*refusal_);
-  write(std::move(response), true);
+  return length && *length <= kMostDroppedBody && parser_->get().count("Expect") == 0;
 }
 
-void Connection::begin_body() {
-  set_deadline(host_.limits.reading, [this] {
-    late_ = true;
-    if (!is_short_) return socket_.cancel();
-    refuse(
-        Problem(503, "the requests at hand take all memory that the server has; come again later")
-            .beyond("memory_bytes")
-            .retry_after(1));
-  });
+/// False: the connection is closed.
+bool Connection::begin_body() {
+  set_reading_deadline();
   const auto& head = parser_->get();
-  if (lower({head["Expect"].data(), head["Expect"].size()}) != "100-continue") return read_body();
+  if (lower({head["Expect"].data(), head["Expect"].size()}) != "100-continue") return true;
   static constexpr std::string_view kGoOn = "HTTP/1.1 100 Continue\r\n\r\n";
-  boost::asio::async_write(socket_, boost::asio::buffer(kGoOn),
-                           [self = shared_from_this()](const Status& written, std::size_t) {
-                             if (written) return self->refuse_reading(written);
-                             self->read_body();
-                           });
+  Status status;
+  const std::size_t sent = socket_.write_some(boost::asio::buffer(kGoOn), status);
+  // A client whose earlier answers fill the way to it sends its body after a while all the same.
+  if (status == boost::asio::error::would_block || sent == kGoOn.size()) return true;
+  close();
+  return false;
 }
 
 /// Room for more of the body; false where no memory is lent for it now.
@@ -245,6 +324,7 @@ bool Connection::make_room_for_body() {
     if (host_.first_body == nullptr) host_.first_body = this;
     if (host_.first_body != this || !body_room_->grow_to(wanted, true)) return false;
   }
+  is_short_ = false;
   host_.body_bytes += wanted - lent;
   body.text.reserve(wanted);
   // Beast reads as much at once as its buffer holds.
@@ -252,49 +332,37 @@ bool Connection::make_room_for_body() {
   return true;
 }
 
-void Connection::read_body() {
-  if (state_ != State::kReading) return;
-  if (!make_room_for_body()) return wait_for_memory();
-  beast_http::async_read_some(socket_, buffer_, *parser_,
-                              [self = shared_from_this()](const Status& status, std::size_t) {
-                                const bool is_full = status == beast_http::error::need_buffer;
-                                if (status && !is_full) return self->refuse_reading(status);
-                                if (self->parser_->is_done()) return self->take_body({});
-                                self->read_body();
-                              });
-}
-
 void Connection::wait_for_memory() {
   is_short_ = true;
   look_.expires_after(kBetweenLooks);
   look_.async_wait([self = shared_from_this()](const Status& status) {
-    if (status || self->state_ != State::kReading || !self->is_short_) return;
+    if (status || self->state_ != State::kReading) return;
     pollfd look{self->socket_.native_handle(), POLLRDHUP, 0};
     if (::poll(&look, 1, 0) > 0) return self->close();
-    self->is_short_ = false;
-    self->read_body();
+    self->parse();
   });
 }
 
-void Connection::take_body(const Status& status) {
-  if (status) return refuse_reading(status);
+void Connection::take_body() {
   clear_deadline();
   request_->body = std::move(parser_->get().body().text);
   parser_.reset();
+  Response response;
   try {
+    if (!refusal_ && !host_.service.is_quick(*request_)) return compute();
     if (refusal_) {
-      Response response = std::move(*refusal_);
-      return write(std::move(response), !keeps_);
+      response = std::move(*refusal_);
+    } else {
+      response = host_.service.answer_quickly(*request_);
+      host_.service.finish(*request_, response);
     }
-    if (!host_.service.is_quick(*request_)) return compute();
-    Response response = host_.service.answer_quickly(*request_);
-    host_.service.finish(*request_, response);
-    write(std::move(response), !keeps_);
   } catch (...) {
-    Response response = host_.service.failure(*request_, std::current_exception(), GivenUp::kNot);
+    if (state_ != State::kReading && state_ != State::kComputing) throw;
+    withdraw_ticket();
+    response = host_.service.failure(*request_, std::current_exception(), GivenUp::kNot);
     host_.service.finish(*request_, response);
-    write(std::move(response), !keeps_);
   }
+  write(std::move(response), !keeps_);
 }
 
 /// Lets the body go: nobody reads it once the request is answered or refused.
@@ -309,15 +377,15 @@ void Connection::give_back_body() {
 
 Problem Connection::problem_of_head(const Status& status) const {
   const Limits& limits = host_.limits;
-  if (late_) {
-    return Problem(408, "the request did not arrive within " +
-                            std::to_string(limits.reading.count()) + " ms; send it at once")
-        .beyond("reading");
-  }
   if (status == beast_http::error::body_limit) {
     return Problem(413, "the body is larger than " + std::to_string(limits.body_bytes) +
                             " bytes; send less at once")
         .beyond("body_bytes");
+  }
+  if (has_head_ && framing_ > limits.header_bytes) {
+    return Problem(431, "extensions and trailers of the body in chunks take more than " +
+                            std::to_string(limits.header_bytes) + " bytes; send fewer")
+        .beyond("header_bytes");
   }
   if (status == beast_http::error::header_limit || status == beast_http::error::buffer_overflow) {
     const std::string_view begun(static_cast<const char*>(buffer_.data().data()), buffer_.size());
@@ -337,14 +405,19 @@ Problem Connection::problem_of_head(const Status& status) const {
   return {400, "the request is no HTTP/1.1: " + status.message()};
 }
 
-void Connection::refuse_reading(const Status& status) {
-  const bool is_gone = !late_ && (status == beast_http::error::end_of_stream ||
-                                  status == beast_http::error::partial_message ||
-                                  status.category() == boost::asio::error::get_system_category());
+/// The deadline of reading passed.
+void Connection::refuse_late() {
+  if (is_short_) {
+    return refuse(
+        Problem(503, "the requests at hand take all memory that the server has; come again later")
+            .beyond("memory_bytes")
+            .retry_after(1));
+  }
   // Nothing came before the deadline: there is nobody to tell.
-  if (is_gone || state_ == State::kClosed || (late_ && buffer_.size() == 0 && !parser_->got_some()))
-    return close();
-  refuse(problem_of_head(status));
+  if (buffer_.size() == 0 && !parser_->got_some()) return close();
+  refuse(Problem(408, "the request did not arrive within " +
+                          std::to_string(host_.limits.reading.count()) + " ms; send it at once")
+             .beyond("reading"));
 }
 
 void Connection::refuse(const Problem& problem) {

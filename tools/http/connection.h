@@ -43,7 +43,9 @@ struct ConnectionHost {
 
 /// Reads a request, has it answered, writes the answer, and begins again. Everything runs on the
 /// one thread of the executor but the computing of answers and the reading of files. A connection
-/// keeps itself alive while it waits for something.
+/// keeps itself alive while it waits for something. It waits for its socket alone, and then reads and
+/// writes what can be at once: no operation holds its parser or a buffer in between, so that it may be
+/// closed, or refuse a request, at any time.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   using Clock = std::chrono::steady_clock;
@@ -78,20 +80,25 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Between two looks whether there is memory again, or a client hung up.
   static constexpr std::chrono::milliseconds kBetweenLooks{25};
 
+  void wait_for_bytes();
+  void look_at_bytes();
   void wait_for_request(std::chrono::milliseconds most);
-  void read_head();
-  void take_head(const Status& status);
+  void begin_request();
+  void set_reading_deadline();
+  void read_more();
+  void parse();
+  [[nodiscard]] Status parse_next();
+  [[nodiscard]] bool take_head();
   [[nodiscard]] std::optional<Problem> problem_of_framing() const;
   [[nodiscard]] std::shared_ptr<Request> request_of_head();
   void check_head();
-  void refuse_before_body();
-  void begin_body();
+  [[nodiscard]] bool is_worth_reading() const;
+  [[nodiscard]] bool begin_body();
   [[nodiscard]] bool make_room_for_body();
-  void read_body();
   void wait_for_memory();
-  void take_body(const Status& status);
+  void take_body();
   void give_back_body();
-  void refuse_reading(const Status& status);
+  void refuse_late();
   void refuse(const Problem& problem);
   [[nodiscard]] Problem problem_of_head(const Status& status) const;
 
@@ -102,14 +109,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void look_at_the_time();
   void watch_for_hang_up();
   void look_for_hang_up();
+  void look_again_for_hang_up();
   void give_up(GivenUp why);
   void refuse_ticket(const Problem& problem);
   void take_answer(std::uint64_t request, Response response, double queued, double computed);
 
   /// @param then_close  The answer is the last one of the connection.
   void write(Response response, bool then_close);
-  void write_next(Status status, std::size_t bytes);
-  void write_piece();
+  void write_more();
   void wait_for_room();
   void read_long_piece();
   void write_long_piece(const std::vector<char>& piece);
@@ -132,13 +139,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
   boost::asio::steady_timer timer_;
   boost::asio::steady_timer look_;  ///< For a hang-up behind bytes that wait, and for memory.
   std::uint64_t deadline_ = 0;      ///< Number of the deadline in force.
-  bool late_ = false;               ///< The deadline of reading passed.
-  bool is_short_ = false;           ///< There was no memory for the body when it passed.
+  bool is_short_ = false;           ///< There is no memory for the body.
+  bool awaits_bytes_ = false;
   State state_ = State::kIdle;
   bool has_head_ = false;
-  Clock::time_point waits_since_;
+  Clock::time_point waits_since_, read_by_;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
+  std::uint64_t framing_ = 0;  ///< Bytes of a body in chunks that are neither body nor needed.
   std::shared_ptr<Request> request_;
   std::optional<Response> refusal_;  ///< Known from the head; the body is dropped first.
   std::shared_ptr<MemoryBudget::Lease> body_room_;
@@ -150,7 +158,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   Response response_;
   std::string head_;
-  std::vector<char> piece_;
+  std::size_t head_written_ = 0;
   std::uint64_t body_written_ = 0, bytes_written_ = 0, dropped_ = 0;
   Clock::time_point began_writing_, write_by_;
   double queued_ = 0.0, computed_ = 0.0;

@@ -128,30 +128,27 @@ void Connection::refuse_ticket(const Problem& problem) {
   write(std::move(response), !keeps_);
 }
 
+/// Bytes that come, or wait already, are of a next request, which is not read yet.
 void Connection::watch_for_hang_up() {
-  if (buffer_.size() > 0) return look_for_hang_up();
-  socket_.async_wait(boost::asio::ip::tcp::socket::wait_read,
-                     [self = shared_from_this(), id = request_->id](const Status& status) {
-                       if (self->state_ != State::kComputing || self->request_->id != id || status)
-                         return;
-                       char byte = 0;
-                       const ssize_t got =
-                           ::recv(self->socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-                       if (got > 0) return self->look_for_hang_up();
-                       if (got < 0 && (errno == EAGAIN || errno == EINTR))
-                         return self->watch_for_hang_up();
-                       self->keeps_ = false;
-                       self->give_up(GivenUp::kHungUp);
-                     });
+  buffer_.size() > 0 ? look_again_for_hang_up() : wait_for_bytes();
+}
+
+void Connection::look_for_hang_up() {
+  char byte = 0;
+  const ssize_t got = ::recv(socket_.native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+  if (got > 0) return look_again_for_hang_up();
+  if (got < 0 && (errno == EAGAIN || errno == EINTR)) return wait_for_bytes();
+  keeps_ = false;
+  give_up(GivenUp::kHungUp);
 }
 
 /// Where further bytes wait, only the system's own state of the socket tells: it is looked at.
-void Connection::look_for_hang_up() {
+void Connection::look_again_for_hang_up() {
   look_.expires_after(kBetweenLooks);
   look_.async_wait([self = shared_from_this(), id = request_->id](const Status& status) {
     if (self->state_ != State::kComputing || self->request_->id != id || status) return;
     pollfd look{self->socket_.native_handle(), POLLRDHUP, 0};
-    if (::poll(&look, 1, 0) <= 0) return self->look_for_hang_up();
+    if (::poll(&look, 1, 0) <= 0) return self->look_again_for_hang_up();
     self->keeps_ = false;
     self->give_up(GivenUp::kHungUp);
   });

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include <boost/asio/buffer.hpp>
-#include <boost/asio/write.hpp>
 
 #include "tools/http/connection.h"
 #include "tools/http/deliver.h"
@@ -21,7 +20,7 @@ namespace {
 /// Bytes of a refused request that are still read, and for how long, before the connection closes:
 /// a socket that is closed while bytes wait in it resets, and the client loses the answer.
 constexpr std::uint64_t kMostDropped = std::uint64_t{1} << 20;
-constexpr std::size_t kDroppedPieceBytes = std::size_t{4} << 10;
+constexpr std::size_t kDroppedPieceBytes = std::size_t{16} << 10;
 constexpr std::chrono::milliseconds kLinger{1000};
 
 }  // namespace
@@ -36,47 +35,36 @@ void Connection::write(Response response, bool then_close) {
   const std::uint64_t held = response_.long_body ? 0 : response_.body_bytes();
   write_by_ = began_writing_ + host_.limits.writing +
               std::chrono::seconds(held / host_.limits.least_bytes_a_second);
-  body_written_ = bytes_written_ = 0;
+  bytes_written_ = head_written_ = 0;
+  body_written_ = request_->method == "HEAD" ? response_.body_bytes() : 0;
   set_deadline(host_.limits.writing, [this] { end_of_answer(false); });
-  const bool has_body = request_->method != "HEAD" && response_.body_bytes() > 0;
-  std::array<boost::asio::const_buffer, 2> first{boost::asio::buffer(head_), {}};
-  if (!has_body) {
-    body_written_ = response_.body_bytes();
-  } else if (!response_.long_body) {
-    const std::string_view body =
-        response_.lasting_body.empty() ? response_.body : response_.lasting_body;
-    first[1] = boost::asio::buffer(body.data(), std::min(body.size(), kPieceBytes));
-    body_written_ = first[1].size();
+  write_more();
+}
+
+/// Writes what the system takes now: the head, and of an answer in memory the rest of a piece.
+void Connection::write_more() {
+  std::string_view body;
+  if (!response_.long_body) {
+    body = response_.lasting_body.empty() ? response_.body : response_.lasting_body;
+    body = body.substr(body_written_, kPieceBytes - body_written_ % kPieceBytes);
   }
-  boost::asio::async_write(socket_, first,
-                           [self = shared_from_this()](const Status& status, std::size_t bytes) {
-                             self->write_next(status, bytes);
-                           });
-}
-
-void Connection::write_next(Status status, std::size_t bytes) {
-  bytes_written_ += bytes;
-  if (state_ != State::kWriting) return;
-  if (status) return end_of_answer(false);
+  const std::array<boost::asio::const_buffer, 2> rest{
+      boost::asio::buffer(head_) + head_written_, boost::asio::buffer(body.data(), body.size())};
+  Status status;
+  const std::size_t taken = socket_.write_some(rest, status);
+  if (status && status != boost::asio::error::would_block) return end_of_answer(false);
+  const std::size_t of_head = std::min(taken, head_.size() - head_written_);
+  head_written_ += of_head;
+  body_written_ += taken - of_head;
+  bytes_written_ += taken;
+  if (head_written_ < head_.size()) return wait_for_room();
   if (body_written_ == response_.body_bytes()) return end_of_answer(true);
-  if (!response_.long_body && Clock::now() > write_by_) return end_of_answer(false);
+  if (response_.long_body || taken - of_head < body.size()) return wait_for_room();
+  if (Clock::now() > write_by_) return end_of_answer(false);
   set_deadline(host_.limits.writing, [this] { end_of_answer(false); });
-  if (response_.long_body) return wait_for_room();
   host_.turns.wait([self = shared_from_this()] {
-    if (self->state_ == State::kWriting) self->write_piece();
+    if (self->state_ == State::kWriting) self->write_more();
   });
-}
-
-/// Writes the next piece of an answer in memory.
-void Connection::write_piece() {
-  const std::string_view body =
-      response_.lasting_body.empty() ? response_.body : response_.lasting_body;
-  const std::string_view piece = body.substr(body_written_, kPieceBytes);
-  body_written_ += piece.size();
-  boost::asio::async_write(socket_, boost::asio::buffer(piece),
-                           [self = shared_from_this()](const Status& next, std::size_t n) {
-                             self->write_next(next, n);
-                           });
 }
 
 /// A piece is read when the socket takes some of it, so that no memory is held for clients that do
@@ -86,7 +74,9 @@ void Connection::wait_for_room() {
                      [self = shared_from_this()](const Status& status) {
                        if (self->state_ != State::kWriting) return;
                        if (status) return self->end_of_answer(false);
-                       self->read_long_piece();
+                       const bool has_head = self->head_written_ == self->head_.size();
+                       if (self->response_.long_body && has_head) return self->read_long_piece();
+                       self->write_more();
                      });
 }
 
@@ -121,9 +111,8 @@ void Connection::read_long_piece() {
 
 void Connection::write_long_piece(const std::vector<char>& piece) {
   Status status;
-  socket_.non_blocking(true, status);
   const std::size_t taken =
-      status ? 0 : socket_.write_some(boost::asio::buffer(piece.data(), piece.size()), status);
+      socket_.write_some(boost::asio::buffer(piece.data(), piece.size()), status);
   if (status && status != boost::asio::error::would_block) return end_of_answer(false);
   const std::uint64_t before = body_written_;
   body_written_ += taken;
@@ -141,11 +130,10 @@ void Connection::end_of_answer(bool is_whole) {
   const std::chrono::duration<double> written = Clock::now() - began_writing_;
   host_.service.note({*request_, given_up_ == GivenUp::kHungUp ? nullptr : &response_, queued_,
                       computed_, was_written ? written.count() : 0.0, bytes_written_, is_whole});
-  if (!is_whole) close();  // The answer being written is let go only then.
+  if (!is_whole) close();
   response_ = {};
   request_.reset();
   head_.clear();
-  piece_ = {};
   if (!is_whole) return;
   if (!keeps_) return linger();
   wait_for_request(host_.limits.idle);
@@ -162,13 +150,12 @@ void Connection::linger() {
 }
 
 void Connection::drop_what_comes() {
-  piece_.resize(kDroppedPieceBytes);
-  socket_.async_read_some(boost::asio::buffer(piece_),
-                          [self = shared_from_this()](const Status& status, std::size_t bytes) {
-                            self->dropped_ += bytes;
-                            if (status || self->dropped_ > kMostDropped) return self->close();
-                            self->drop_what_comes();
-                          });
+  std::array<char, kDroppedPieceBytes> piece;
+  Status status;
+  dropped_ += socket_.read_some(boost::asio::buffer(piece), status);
+  if (status && status != boost::asio::error::would_block) return close();
+  if (dropped_ > kMostDropped) return close();
+  wait_for_bytes();
 }
 
 }  // namespace ptin::http

@@ -20,6 +20,7 @@ struct GrowingBody {
   struct value_type {
     std::string text;
     bool is_dropped = false;  ///< Bytes that arrive are not kept.
+    std::uint64_t arrived = 0;
   };
 
   class reader {
@@ -34,13 +35,17 @@ struct GrowingBody {
     std::size_t put(const Buffers& buffers, boost::system::error_code& status) {
       status = {};
       const std::size_t arrived = boost::asio::buffer_size(buffers);
-      if (body_.is_dropped) return arrived;
+      if (body_.is_dropped) {
+        body_.arrived += arrived;
+        return arrived;
+      }
       const std::size_t room = body_.text.capacity() - body_.text.size();
       const std::size_t taken = std::min(arrived, room);
       if (taken == 0 && arrived > 0) {
         status = boost::beast::http::error::need_buffer;
         return 0;
       }
+      body_.arrived += taken;
       const std::size_t before = body_.text.size();
       body_.text.resize(before + taken);
       boost::asio::buffer_copy(boost::asio::buffer(body_.text.data() + before, taken), buffers);
