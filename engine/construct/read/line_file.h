@@ -35,7 +35,7 @@ struct LineFileCrs {
 
 /// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A vertex
 /// of a line has a height always, polygons may have none; a ring ends with the vertex that it begins with. Features without a geometry
-/// are passed over. Of LandXML these are the Breaklines and the Boundaries of a surface's SourceData,
+/// are passed over, and so are hidden ones (read/hidden_features.h). Of LandXML these are the Breaklines and the Boundaries of a surface's SourceData,
 /// with northing before easting; of other files what OGR reads.
 /// @throws Error  not_found, io_error, cancelled
 ///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
