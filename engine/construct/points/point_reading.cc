@@ -11,6 +11,7 @@
 #include "engine/construct/points/open_points.h"
 #include "engine/construct/points/point_spool.h"
 #include "engine/construct/read/column_names.h"
+#include "engine/construct/read/crs_beside.h"
 #include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/text_rows.h"
@@ -163,6 +164,11 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
                                         {&memory, task.stop, progress}, portion.part);
   PortionRead result;
   result.source = stream->facts();
+  SourceWarnings of_crs;
+  const bool is_layer = point_format_of(path, options_.points) == PointFormat::kLayer;
+  if (!is_layer || result.source.crs.empty()) {  // OGR looks at a .prj where one belongs to it
+    take_crs_beside(path, result.source.crs, of_crs);
+  }
   SpoolWriter writer(files_.files, files_.path("spool", number), number);
   EvenSample sample;
   std::vector<SourcePoint> batch;
@@ -182,6 +188,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.left_out.join(stream->left_out());
   result.rows = stream->rows();
   result.warnings = stream->warnings();
+  result.warnings.join(of_crs);
   writer.finish();
   result.samples = sample.points();
   result.sample_step = sample.step();

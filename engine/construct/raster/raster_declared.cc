@@ -12,6 +12,7 @@
 #include <gdal_rat.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/raster/raster_header.h"
 #include "engine/construct/raster/raster_place.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
@@ -123,12 +124,13 @@ using VerticalPartsOfOldFiles = CPLConfigOptionSetter;
 
 }  // namespace
 
-GDALDatasetUniquePtr open_raster(const std::string& path) {
+GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnings) {
   const GdalSession session;
   const VerticalPartsOfOldFiles option("GTIFF_REPORT_COMPD_CS", "YES", false);
   static constexpr unsigned kFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), kFlags));
   if (data != nullptr) {
+    session.tell_warnings(path, warnings);
     return data;
   }
   VSIStatBufL status;
@@ -202,6 +204,7 @@ RasterShape shape_of(GDALDataset& data, GDALRasterBand& band, const std::string&
                      SourceWarnings& warnings) {
   const VerticalPartsOfOldFiles option("GTIFF_REPORT_COMPD_CS", "YES", false);
   RasterShape shape;
+  check_header(data, path, warnings);
   describe_values(band, path, shape);
   describe_place(data, path, shape, warnings);
   warn_of_classes(band, path, warnings);

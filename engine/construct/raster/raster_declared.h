@@ -27,8 +27,9 @@ struct RasterBands {
 
 /// Opens a raster. Vertical parts of the CRSs of old GeoTIFFs are asked for, which GDAL leaves out by
 /// itself.
+/// @param warnings  Receives what GDAL warns of.
 /// @throws Error not_found, io_error; invalid_argument  not a raster
-[[nodiscard]] GDALDatasetUniquePtr open_raster(const std::string& path);
+[[nodiscard]] GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnings);
 
 /// The band of heights, and those that mask it.
 /// @param is_overridden  The caller's nodata value replaces any declared one.

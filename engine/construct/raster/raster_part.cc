@@ -151,6 +151,7 @@ RasterPart::RasterPart(std::string path, std::optional<double> nodata_override)
   open();
   const GdalSession session;
   shape_ = shape_of(*bands_->data, *bands_->height, path_, warnings_);
+  session.tell_warnings(path_, warnings_);
   bands_->look_behind(shape_.raw);
   const std::optional<double> nodata =
       nodata_override_ ? nodata_override_ : declared_nodata(*bands_->height);
@@ -178,7 +179,8 @@ RasterPart& RasterPart::operator=(RasterPart&&) noexcept = default;
 
 void RasterPart::open() {
   auto bands = std::make_unique<Bands>();
-  bands->data = open_raster(path_);
+  SourceWarnings told;
+  bands->data = open_raster(path_, told);
   const GdalSession session;
   static_cast<RasterBands&>(*bands) = bands_of(*bands->data, path_, nodata_override_.has_value());
   const bool changed = shape_.width != 0 && (bands->data->GetRasterXSize() != shape_.width ||
@@ -188,6 +190,9 @@ void RasterPart::open() {
   }
   if (shape_.width != 0) {
     bands->look_behind(shape_.raw);
+  } else {
+    session.tell_warnings(path_, told);
+    warnings_ = std::move(told);
   }
   bands_ = std::move(bands);
 }

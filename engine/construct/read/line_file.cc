@@ -4,12 +4,14 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/read/hidden_features.h"
 #include "engine/construct/read/land_xml_lines.h"
 #include "engine/error.h"
 #include "engine/stop.h"
@@ -129,6 +131,9 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
   OGRLayer& layer =
       choose_layer(*data, {wish.kind, wish.layer, "name one with " + wish.option}, path);
   LineFeatures features(path, wish, take);
+  SourceWarnings warnings;
+  session.tell_warnings(path, warnings);
+  const HiddenFeatures hidden(*data, layer);
   layer.ResetReading();
   for (;;) {
     stop_if_asked(stop, "reading", path);
@@ -136,7 +141,9 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
     if (feature == nullptr) {
       break;
     }
-    features.add(*feature);
+    if (!hidden.holds(*feature)) {
+      features.add(*feature);
+    }
   }
   if (session.failed()) {
     throw Error(ErrorCode::io_error, session.explain("cannot be read on"), path);
@@ -146,7 +153,7 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
                " in layer '" + layer.GetName() + "'; leave the file out, or name another layer",
            path);
   }
-  return {crs_of(layer), {}, features.is_flat(), {}};
+  return {crs_of(layer), {}, features.is_flat(), std::move(warnings)};
 }
 
 }  // namespace ptin

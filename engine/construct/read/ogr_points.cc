@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <cpl_vsi.h>
@@ -14,6 +15,7 @@
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/column_names.h"
 #include "engine/construct/read/dxf_units.h"
+#include "engine/construct/read/hidden_features.h"
 #include "engine/construct/read/layer_choice.h"
 #include "engine/error.h"
 
@@ -38,6 +40,19 @@ bool is_numeric(OGRFieldType type) {
   return type == OFTReal || type == OFTInteger || type == OFTInteger64;
 }
 
+/// The names of the attributes that hold numbers, in quotes; "" where none does.
+std::string numbers_in(OGRLayer& layer) {
+  OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  std::string names;
+  for (int i = 0; i < definition.GetFieldCount(); ++i) {
+    if (is_numeric(definition.GetFieldDefn(i)->GetType())) {
+      names += (names.empty() ? "'" : ", '") +
+               std::string(definition.GetFieldDefn(i)->GetNameRef()) + "'";
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 struct OgrPoints::Layer {
@@ -45,12 +60,14 @@ struct OgrPoints::Layer {
   OGRLayer* layer = nullptr;
   int z_field = -1;
   int altitude_mode = -1;  ///< The attribute in which KML tells what its heights are above.
+  std::optional<HiddenFeatures> hidden;
 
-  void open(const std::string& path, const PointChoice& choice);
+  void open(const std::string& path, const PointChoice& choice, SourceWarnings& warnings);
   void choose_height(const std::string& path, const std::string& field);
 };
 
-void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) {
+void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice,
+                            SourceWarnings& warnings) {
   const GdalSession session;
   data.reset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
@@ -67,6 +84,8 @@ void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) 
   if (z_field < 0 && EQUAL(data->GetDriverName(), "LIBKML")) {
     altitude_mode = layer->GetLayerDefn()->GetFieldIndex("altitudeMode");
   }
+  hidden.emplace(*data, *layer);
+  session.tell_warnings(path, warnings);
 }
 
 void OgrPoints::Layer::choose_height(const std::string& path, const std::string& field) {
@@ -77,20 +96,17 @@ void OgrPoints::Layer::choose_height(const std::string& path, const std::string&
     const OGRwkbGeometryType type = layer->GetGeomType();
     if (wkbFlatten(type) != wkbUnknown && !wkbHasZ(type)) {
       refuse("the points of layer '" + std::string(layer->GetName()) +
-             "' have no z; name the attribute that holds their height with --z-field");
+             (numbers_in(*layer).empty()
+                  ? "' have no z, and no attribute holds numbers; give points with z, or a text "
+                    "with x, y and z in each line (.xyz, .csv)"
+                  : "' have no z; name the attribute that holds their height with --z-field"));
     }
     return;
   }
   OGRFeatureDefn* definition = layer->GetLayerDefn();
   z_field = definition->GetFieldIndex(field.c_str());
   if (z_field < 0) {
-    std::string names;
-    for (int i = 0; i < definition->GetFieldCount(); ++i) {
-      if (is_numeric(definition->GetFieldDefn(i)->GetType())) {
-        names += (names.empty() ? "'" : ", '") +
-                 std::string(definition->GetFieldDefn(i)->GetNameRef()) + "'";
-      }
-    }
+    const std::string names = numbers_in(*layer);
     refuse("there is no attribute '" + field + "'; " +
            (names.empty() ? "none holds numbers" : "numbers are in " + names));
   }
@@ -101,7 +117,7 @@ void OgrPoints::Layer::choose_height(const std::string& path, const std::string&
 
 OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
     : path_(std::move(path)), layer_(std::make_unique<Layer>()) {
-  layer_->open(path_, choice);
+  layer_->open(path_, choice, warnings_);
   const GdalSession session;
   facts_.crs = crs_of(*layer_->layer);
   facts_.units.heights = unit_of_column(choice.z_field);
@@ -213,7 +229,7 @@ void OgrPoints::note_altitude_mode(const void* any) {
 void OgrPoints::add_feature(void* any, std::vector<SourcePoint>& batch) {
   auto& feature = *static_cast<OGRFeature*>(any);
   const OGRGeometry* geometry = feature.GetGeometryRef();
-  if (geometry == nullptr || geometry->IsEmpty() != 0 ||
+  if (geometry == nullptr || geometry->IsEmpty() != 0 || layer_->hidden->holds(feature) ||
       (layer_->z_field >= 0 && feature.IsFieldSetAndNotNull(layer_->z_field) == 0)) {
     left_out_.add(LeftOutReason::kNoHeight);
     return;
