@@ -10,11 +10,11 @@
 #include "engine/error.h"
 #include "engine/geometry/hilbert.h"
 #include "engine/geometry/key_table.h"
-#include "engine/large_array.h"
 #include "engine/mesh/split.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/total_order.h"
+#include "engine/query/stream/growing_mesh.h"
 #include "engine/query/stream/split_code.h"
 #include "engine/query/stream/stream_format.h"
 
@@ -27,58 +27,6 @@ constexpr std::uint64_t kMostSplits = std::uint64_t{1} << 20;
 constexpr std::uint64_t kShare = 8;
 static_assert(kShare <= stream::kLeastShare && kMostSplits >= stream::kMostLeastSplits);
 constexpr std::size_t kMostMetadata = std::size_t{1} << 20;
-
-/// A mesh that grows split by split, and the place of each vertex.
-class GrowingMesh {
- public:
-  GrowingMesh(const Tin& base, std::uint64_t splits) {
-    const auto copy = [](const auto& from, auto& to, std::uint64_t more) {
-      reserve_large(to, from.size() + more);
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    copy(base.vertices, tin_.vertices, splits);
-    copy(base.has_height, tin_.has_height, splits);
-    copy(base.triangles, tin_.triangles, 2 * splits);
-    copy(base.classes, tin_.classes, 2 * splits);
-    ids_.reserve(base.vertices.size() + splits);
-    for (VertexId v = 0; v < base.vertices.size(); ++v) {
-      ids_.insert(key_of(base.position(v)), v);
-    }
-  }
-  [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
-  [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
-
-  /// Bytes of a mesh of so many vertices.
-  [[nodiscard]] static std::uint64_t bytes_of(std::uint64_t vertices) noexcept {
-    constexpr std::uint64_t kVertexBytes = sizeof(Vertex) + sizeof(std::uint8_t);
-    constexpr std::uint64_t kTriangleBytes = sizeof(Triangle) + sizeof(TriangleClass);
-    return vertices * (kVertexBytes + 2 * kTriangleBytes) + KeyTable::bytes_for(vertices);
-  }
-
-  SplitResult apply(const PendingSplit& s, const QueryContext& context) {
-    const auto u = static_cast<VertexId>(tin_.vertices.size());
-    const VertexId w = find(s.w);
-    const VertexId vl = find(s.vl);
-    const VertexId vr = find(s.vr);
-    if (w == KeyTable::kAbsent || vl == KeyTable::kAbsent || vr == KeyTable::kAbsent) {
-      throw_refused(s, "it names a vertex that no record before it makes", context);
-    }
-    if (!ids_.insert(s.u, u)) {
-      throw_refused(s, "its vertex is in the mesh already", context);
-    }
-    tin_.vertices.push_back({point_of(s.u), s.height, kNone});
-    tin_.has_height.push_back((s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
-    const SplitResult made = split(tin_, site_of(u, w, vl, vr, s.flags));
-    if (!made.applied) {
-      throw_refused(s, "it does not fit the mesh", context);
-    }
-    return made;
-  }
-
- private:
-  Tin tin_;
-  KeyTable ids_;
-};
 
 /// The level of each split of a frame: the length of the longest chain of splits of the frame that
 /// it depends on. Level 0 depends on none of them. The splits of one level can come in any order.
