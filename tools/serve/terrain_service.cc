@@ -348,7 +348,13 @@ Response TerrainService::compute(const Request& request, const Match& found,
                     collection,
                     found.rest,
                     {lease ? lease->bytes() : 0, request.stop}};
-  Response response = found.endpoint->answer(asked);
+  Response response;
+  try {
+    response = found.endpoint->answer(asked);
+  } catch (const Error& error) {
+    if (collection && error.code() == ErrorCode::corruption) catalogue_.note_damage(*collection);
+    throw;
+  }
   if (response.held || response.long_body) return response;
   if (!is_get(request) || !collection) {
     pack(http::takes_gzip(request.header("accept-encoding").value_or("")), response);
