@@ -372,7 +372,8 @@ Response TerrainService::options_of(const Request& request) const {
   if (!options_.cors_origin.empty() && request.header("access-control-request-method")) {
     response.add("Access-Control-Allow-Methods", methods);
     response.add("Access-Control-Allow-Headers",
-                 "Content-Type, Authorization, If-None-Match, Range");
+                 "Content-Type, Authorization, If-Match, If-None-Match, If-Modified-Since, "
+                 "If-Unmodified-Since, Range, If-Range");
     response.add("Access-Control-Max-Age", "86400");
   }
   return response;
