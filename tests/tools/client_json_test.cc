@@ -43,6 +43,18 @@ TEST(ClientJson, IsWhatTheLibraryReads) {
   }
 }
 
+TEST(ClientJson, TellsOfANumberBeyondAllThatThereAre) {
+  for (const std::string& text : {std::string("[1e400]"), std::string(1000, '9')}) {
+    try {
+      static_cast<void>(json_of_client(text, "body"));
+      ADD_FAILURE() << text;
+    } catch (const http::Problem& problem) {
+      EXPECT_EQ(problem.status(), 400U);
+      EXPECT_NE(problem.detail().find("number"), std::string::npos) << problem.detail();
+    }
+  }
+}
+
 TEST(ClientJson, IsNoDeeperThanItsBounds) {
   EXPECT_EQ(status_of(std::string(16, '[') + std::string(16, ']')), 200U);
   EXPECT_EQ(status_of(std::string(17, '[') + std::string(17, ']')), 400U);

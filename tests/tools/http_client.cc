@@ -29,7 +29,16 @@ bool is_readable(int fd, std::chrono::milliseconds time) {
 
 }  // namespace
 
-HttpClient::HttpClient(const std::string& address) : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+HttpClient::HttpClient(const std::string& address, const std::string& source)
+    : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  if (!source.empty()) {
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    ::inet_pton(AF_INET, source.c_str(), &own.sin_addr);
+    if (::bind(fd_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
+      throw std::runtime_error("cannot connect from " + source);
+    }
+  }
   const std::size_t colon = address.rfind(':');
   sockaddr_in to{};
   to.sin_family = AF_INET;

@@ -44,7 +44,8 @@ struct HttpAnswer {
 class HttpClient {
  public:
   /// @param address  "127.0.0.1:8080".
-  explicit HttpClient(const std::string& address);
+  /// @param source  Its own address, as 127.0.0.2; empty: the system's choice.
+  explicit HttpClient(const std::string& address, const std::string& source = {});
   ~HttpClient();
   HttpClient(const HttpClient&) = delete;
   HttpClient& operator=(const HttpClient&) = delete;

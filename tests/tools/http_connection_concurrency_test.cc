@@ -113,5 +113,48 @@ TEST(HttpConnectionConcurrency, TakesABodyInManyChunksWithAWordBesideThem) {
   EXPECT_EQ(client.receive()->body, "POST " + std::string(5000, 'x') + "y");
 }
 
+TEST(HttpConnectionConcurrency, IgnoresEmptyLinesBeforeARequest) {
+  MadeService service;
+  RunningServer running(small_limits(), service);
+  HttpClient client(running.address());
+  client.send(
+      "\r\nPOST /echo HTTP/1.1\r\nHost: a\r\nContent-Length: 3\r\n\r\ntwo\r\nGET /quick "
+      "HTTP/1.1\r\nHost: a\r\n\r\n\r");
+  EXPECT_EQ(client.receive()->body, "POST two");
+  EXPECT_EQ(client.receive()->body, "quick");
+  client.send("\nGET /quick HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(client.receive()->body, "quick");
+}
+
+TEST(HttpConnectionConcurrency, IgnoresAnExpectationOfTheVersionThatHasNone) {
+  MadeService service;
+  RunningServer running(small_limits(), service);
+  HttpClient client(running.address());
+  client.send("POST /echo HTTP/1.0\r\nExpect: 100-continue\r\nContent-Length: 2\r\n\r\n");
+  EXPECT_FALSE(client.is_readable_within(milliseconds(50)));
+  client.send("hi");
+  EXPECT_EQ(client.receive()->body, "POST hi");
+}
+
+TEST(HttpConnectionConcurrency, TellsWhatItDoesNotSpeak) {
+  MadeService service;
+  RunningServer running(small_limits(), service);
+  const auto status_of = [&](const std::string& request) {
+    HttpClient client(running.address());
+    client.send(request);
+    const auto answer = client.receive();
+    return answer ? answer->status : 0;
+  };
+  EXPECT_EQ(status_of("GET / HTTP/2.0\r\nHost: a\r\n\r\n"), 505);
+  EXPECT_EQ(status_of("GET / HTTP/1.2\r\nHost: a\r\n\r\n"), 505);
+  EXPECT_EQ(status_of("GET / HTTX/1.1\r\nHost: a\r\n\r\n"), 400);
+  EXPECT_EQ(status_of("GET HTTP://a/quick HTTP/1.1\r\nHost: a\r\n\r\n"), 200);
+  EXPECT_EQ(status_of("OPTIONS * HTTP/1.1\r\nHost: a\r\n\r\n"), 200);
+  EXPECT_EQ(status_of("GET * HTTP/1.1\r\nHost: a\r\n\r\n"), 400);
+  const std::string packed =
+      "POST /echo HTTP/1.1\r\nHost: a\r\nContent-Encoding: gzip\r\nContent-Length: 3\r\n\r\nabc";
+  EXPECT_EQ(status_of(packed), 415);
+}
+
 }  // namespace
 }  // namespace ptin::tools::testing

@@ -71,6 +71,14 @@ TEST_F(ServeConventions, NamesTheMethodsThatAreAnswered) {
   EXPECT_EQ(served_->ask("OPTIONS", "/collections/mountains/mesh", "", "").header("allow"),
             "GET, HEAD, OPTIONS");
   EXPECT_FALSE(get("/healthz").header("date").empty());
+  const std::string may_send =
+      served_
+          ->ask("OPTIONS", "/collections/mountains/file",
+                "Origin: http://a\r\nAccess-Control-Request-Method: GET\r\n", "")
+          .header("access-control-allow-headers");
+  for (const char* header : {"If-Match", "If-Range", "If-Modified-Since", "If-Unmodified-Since"}) {
+    EXPECT_NE(may_send.find(header), std::string::npos) << header;
+  }
 }
 
 TEST_F(ServeConventions, GivesRangesOfFilesAsHttpHasThem) {
@@ -81,6 +89,8 @@ TEST_F(ServeConventions, GivesRangesOfFilesAsHttpHasThem) {
   const HttpAnswer beyond = get(file, "Range: bytes=" + bytes + "-\r\n");
   EXPECT_EQ(beyond.status, 416);
   EXPECT_EQ(beyond.header("content-range"), "bytes */" + bytes);
+  EXPECT_EQ(get(file, "Range: bytes=99999999999999999999-\r\n").status, 416);
+  EXPECT_EQ(get(file, "Range: bytes=0-99999999999999999999\r\n").header("content-length"), bytes);
   EXPECT_EQ(get(file, "Range: Bytes=0-3\r\n").body.size(), 4U);
   const std::string tag = whole.header("etag");
   EXPECT_EQ(get(file, "Range: bytes=0-3\r\nIf-Range: " + tag + "\r\n").status, 206);

@@ -29,6 +29,13 @@ serve::ServeOptions one_file(const std::string& path) {
 }
 
 constexpr const char* kHighest = "/collections/dem/highest?crs=native";
+constexpr const char* kIsolines = "/collections/dem/isolines?interval=50";
+
+void damage_pages(const std::string& path) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  const auto bytes = static_cast<std::streamoff>(fs::file_size(path));
+  for (std::streamoff at = bytes / 3; at < bytes * 2 / 3; at += 512) file.seekp(at).put('?');
+}
 
 TEST(ServeFiles, PicksUpAFileThatTakesTheOldOnesPlace) {
   TestFolder folder;
@@ -86,14 +93,28 @@ TEST(ServeFiles, FailsAQuestionWhosePagesAreDamaged) {
   TestFolder folder;
   const std::string dem = folder.file("dem.ptin");
   fs::copy_file(built(folder, "mountains_257.tif"), dem);
-  {
-    std::fstream file(dem, std::ios::in | std::ios::out | std::ios::binary);
-    const auto bytes = static_cast<std::streamoff>(fs::file_size(dem));
-    for (std::streamoff at = bytes / 3; at < bytes * 2 / 3; at += 512) file.seekp(at).put('?');
-  }
+  damage_pages(dem);
   ServedTerrains served(one_file(dem));
-  EXPECT_EQ(served.get("/collections/dem/isolines?interval=50").status, 500);
+  EXPECT_EQ(served.get(kIsolines).status, 500);
   EXPECT_EQ(served.get("/collections/dem").status, 200);
+}
+
+TEST(ServeFiles, AreDamagedUntilTheyAreReplacedWherePagesAre) {
+  TestFolder folder;
+  const std::string dem = folder.file("dem.ptin"), whole = built(folder, "mountains_257.tif");
+  fs::copy_file(whole, dem);
+  ServedTerrains served(one_file(dem));
+  damage_pages(dem);
+  EXPECT_EQ(served.get("/readyz").status, 200);  // Nobody met it yet.
+  EXPECT_EQ(served.get(kIsolines).status, 500);
+  EXPECT_EQ(served.get("/readyz").body, "damaged: dem\n");
+  EXPECT_EQ(served.get("/collections/dem").status, 200);
+  EXPECT_EQ(served.get("/readyz").status, 503);
+  const std::string other = folder.file("other.ptin");
+  fs::copy_file(whole, other);
+  fs::rename(other, dem);
+  EXPECT_EQ(served.get(kIsolines).status, 200);
+  EXPECT_EQ(served.get("/readyz").status, 200);
 }
 
 TEST(ServeFiles, AnswersFromOneFileOrTheOtherWhileTheyChangePlaces) {

@@ -2,6 +2,7 @@
 //
 // The cost of CRSs that are new to the service.
 #include <chrono>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,21 @@ TEST(MakingTime, ComesBackNoFurtherThanItWas) {
   EXPECT_EQ(time.take(begun + seconds(1000)).count(), 0);
   time.settle(MakingTime::Seconds(2));
   EXPECT_GT(time.take(begun + seconds(1000)).count(), 0);
+}
+
+TEST(MakingTime, KeepsSomeForWhoSpentLess) {
+  MakingTime time(MakingTime::Seconds(8), 0.25);
+  const MakingTime::Clock::time_point begun(seconds(1000));
+  const auto begins_of = [&](const std::string& who) {
+    int begins = 0;
+    while (time.take(begun, who).count() == 0) ++begins;
+    return begins;
+  };
+  EXPECT_EQ(begins_of("a"), 17);  // A quarter of a second each: until it has more than is left.
+  EXPECT_EQ(begins_of("b"), 8);
+  EXPECT_EQ(time.take(begun, "c").count(), 0);
+  EXPECT_GT(time.take(begun, "a").count(), 0);
+  EXPECT_EQ(time.take(begun + seconds(20), "a").count(), 0);  // Most of it has come back.
 }
 
 }  // namespace

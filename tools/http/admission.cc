@@ -29,6 +29,10 @@ std::size_t group_of(Lane lane) noexcept {
 
 bool is_long(Lane lane) noexcept { return lane == Lane::kTile || lane == Lane::kSweep; }
 
+MemoryUse use_of(Lane lane) noexcept {
+  return lane == Lane::kPoint ? MemoryUse::kPoint : MemoryUse::kQuestion;
+}
+
 /// Linux has a niceness for each thread. Where it is refused, all threads are equal.
 void be_nicer() {
   const int now = ::getpriority(PRIO_PROCESS, 0);
@@ -123,7 +127,7 @@ struct Admission::Shared {
       const std::size_t i = index_of(lane);
       if (running[i] >= width(lane, sizes)) continue;
       auto ticket = lines[i].take([&](const Ticket& one) {
-        lease = memory->lend(one.memory, one.client);
+        lease = memory->lend(one.memory, one.client, use_of(lane));
         wants_memory = wants_memory || !lease;
         return lease != nullptr;
       });
@@ -143,7 +147,8 @@ struct Admission::Shared {
     const bool is_thread_free = running[i] < width(ticket.lane, sizes) &&
                                 (!is_long(ticket.lane) || of_long <= sizes.threads);
     const auto first = lines[i].first_of(ticket.client);
-    const bool lacks_memory = is_thread_free && first && !memory->has(first->memory, first->client);
+    const bool lacks_memory =
+        is_thread_free && first && !memory->has(first->memory, first->client, use_of(ticket.lane));
     return lacks_memory ? WaitsFor::kMemory : WaitsFor::kTurn;
   }
   [[nodiscard]] bool is_at_rest() const {
@@ -159,7 +164,7 @@ struct Admission::Shared {
   std::array<Line, kLanes> lines;
   std::array<std::size_t, kLanes> running{};
   bool wants_memory = false;  ///< A ticket waits for memory that was not there.
-  bool has_worked = false;    ///< There was a long question since the last rest.
+  bool has_worked = false;    ///< Much memory came back since the last rest, or will.
   bool ends = false;
 };
 
@@ -172,13 +177,15 @@ Admission::Admission(const Sizes& sizes, std::function<void()> rests)
   shared_->sizes = sizes;
   shared_->rests = std::move(rests);
   const std::weak_ptr<Shared> weak = shared_;
-  shared_->memory = std::make_shared<MemoryBudget>(sizes.memory_bytes, [weak] {
+  shared_->memory = std::make_shared<MemoryBudget>(sizes.memory, [weak](MemoryUse use) {
     const auto shared = weak.lock();
     if (!shared) return;
     {
       const std::lock_guard lock(shared->mutex);
-      if (!shared->wants_memory) return;
+      const bool is_to_rest = use != MemoryUse::kPoint && !shared->has_worked;
+      if (!shared->wants_memory && !is_to_rest) return;
       shared->wants_memory = false;
+      shared->has_worked = shared->has_worked || is_to_rest;
     }
     for (auto& changed : shared->changed) changed.notify_all();
   });
@@ -265,7 +272,8 @@ void Admission::work(const std::vector<Lane>& lanes) {
       return ticket || shared->ends;
     };
     if (!is_patient || !shared->has_worked) {
-      changed.wait(lock, is_called);
+      changed.wait(lock, [&] { return is_called() || (is_patient && shared->has_worked); });
+      if (!ticket && !shared->ends) continue;
     } else if (!changed.wait_for(lock, kBeforeRest, is_called)) {
       if (!shared->has_worked || !shared->is_at_rest()) continue;
       shared->has_worked = false;

@@ -66,11 +66,11 @@ class Admission {
   struct Sizes {
     std::size_t threads = 1;   ///< Sweeps that are computed at once.
     std::size_t waiting = 64;  ///< Tickets that wait in each lane but that of reading.
-    std::uint64_t memory_bytes = 0;
+    MemoryParts memory;
   };
 
-  /// @param rests  Called on a thread for computing when there were long questions and
-  ///               nothing is left to do.
+  /// @param rests  Called on a thread for computing when there were long questions, or memory of
+  ///               bodies or answers came back, and nothing is left to do.
   explicit Admission(const Sizes& sizes, std::function<void()> rests = {});
   /// Finishes what runs; what waits is let go.
   ~Admission();

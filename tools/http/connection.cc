@@ -12,6 +12,7 @@
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/read_size.hpp>
+#include <boost/beast/core/string.hpp>
 #include <boost/beast/http/error.hpp>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -30,7 +31,7 @@ using std::chrono::milliseconds;
 /// So much of an answer waits in the system's memory, beside what is on its way: without a bound it
 /// takes megabytes for each client that does not read.
 constexpr int kMostUnsentBytes = 128 << 10;
-/// The first room of a body; each further one is twice as large.
+/// The first room of a body, which each connection has; each further one is twice as large, and lent.
 constexpr std::size_t kFirstBodyBytes = std::size_t{4} << 10;
 /// A body of so many bytes is read to its end though the request is refused: the connection goes on.
 constexpr std::uint64_t kMostDroppedBody = std::uint64_t{64} << 10;
@@ -84,7 +85,8 @@ void Connection::abort() {
 }
 
 std::optional<Connection::Clock::time_point> Connection::waits_since() const {
-  if (state_ == State::kIdle || (state_ == State::kReading && !has_head_)) return waits_since_;
+  if (state_ == State::kIdle || state_ == State::kLingering) return waits_since_;
+  if (state_ == State::kReading && !has_head_) return waits_since_;
   return std::nullopt;
 }
 
@@ -177,9 +179,21 @@ void Connection::parse() {
   }
 }
 
+/// Before a request: some clients end a body with one more (RFC 9112, section 2.2). False: half a line
+/// end stands there.
+bool Connection::skip_empty_lines() {
+  const auto* const bytes = static_cast<const char*>(buffer_.data().data());
+  const std::string_view begun(bytes, buffer_.size());
+  std::size_t empty = 0;
+  while (begun.substr(empty, 2) == "\r\n") empty += 2;
+  buffer_.consume(empty);
+  return begun.substr(empty) != "\r";
+}
+
 /// The head, or else a chunk's line, the trailers or a part of the body.
 Connection::Status Connection::parse_next() {
   Status status = beast_http::error::need_more;
+  if (!parser_->got_some() && !skip_empty_lines()) return status;
   if (buffer_.size() == 0) return status;
   const std::uint64_t before = parser_->get().body().arrived;
   const std::size_t used = parser_->put(buffer_.data(), status);
@@ -221,23 +235,6 @@ bool Connection::take_head() {
   return begin_body();
 }
 
-/// What a proxy before this server might read in another way: it would take the body of one request
-/// for another one (RFC 9112, sections 3.2 and 6.1).
-std::optional<Problem> Connection::problem_of_framing() const {
-  const auto& head = parser_->get();
-  const std::string coding =
-      lower({head["Transfer-Encoding"].data(), head["Transfer-Encoding"].size()});
-  if (!coding.empty() && (coding != "chunked" || head.version() < 11)) {
-    return Problem(501,
-                   "the body comes in a transfer coding that is not answered; send it chunked, "
-                   "or with Content-Length");
-  }
-  if (head.version() >= 11 && head.count("Host") != 1) {
-    return Problem(400, "a request of HTTP/1.1 has one header Host");
-  }
-  return std::nullopt;
-}
-
 std::shared_ptr<Request> Connection::request_of_head() {
   const auto& head = parser_->get();
   auto request = std::make_shared<Request>();
@@ -271,7 +268,8 @@ void Connection::check_head() {
   refusal_.reset();
   request_->path = path_of(request_->target);  // Where the rest of the target is refused.
   try {
-    Target target = parse_target(request_->target);
+    const bool is_of_all = request_->method == "OPTIONS" && request_->target == "*";
+    Target target = parse_target(is_of_all ? "/" : request_->target);
     request_->path = std::move(target.path);
     request_->parameters = std::move(target.parameters);
     request_->is_parsed = true;
@@ -283,23 +281,32 @@ void Connection::check_head() {
     }
     if (host_.drains) throw Problem(503, "the service ends; ask again").retry_after(1);
     host_.service.check(*request_);
+    const auto coding = request_->header("content-encoding");
+    if (coding && lower(*coding) != "identity" && !parser_->is_done()) {
+      throw Problem(415, "the body comes packed; send it as it is, without Content-Encoding");
+    }
   } catch (...) {
     refusal_ = host_.service.failure(*request_, std::current_exception(), GivenUp::kNot);
     host_.service.finish(*request_, *refusal_);
   }
 }
 
+/// Of HTTP/1.0 it is to be ignored (RFC 9110, section 10.1.1).
+bool Connection::expects_continue() const {
+  const auto& head = parser_->get();
+  return head.version() >= 11 && boost::beast::iequals(head["Expect"], "100-continue");
+}
+
 /// Whether the body of a refused request is read to its end, so that the connection goes on.
 bool Connection::is_worth_reading() const {
   const auto length = parser_->content_length();
-  return length && *length <= kMostDroppedBody && parser_->get().count("Expect") == 0;
+  return length && *length <= kMostDroppedBody && !expects_continue();
 }
 
 /// False: the connection is closed.
 bool Connection::begin_body() {
   set_reading_deadline();
-  const auto& head = parser_->get();
-  if (lower({head["Expect"].data(), head["Expect"].size()}) != "100-continue") return true;
+  if (!expects_continue()) return true;
   static constexpr std::string_view kGoOn = "HTTP/1.1 100 Continue\r\n\r\n";
   Status status;
   const std::size_t sent = socket_.write_some(boost::asio::buffer(kGoOn), status);
@@ -317,15 +324,14 @@ bool Connection::make_room_for_body() {
       parser_->content_length().value_or(std::uint64_t{host_.limits.body_bytes}));
   const std::size_t wanted = std::max(
       std::min(most, std::max(2 * body.text.capacity(), kFirstBodyBytes)), body.text.size() + 1);
-  if (!body_room_) body_room_ = host_.admission.memory()->lend(0, request_->share);
-  const std::uint64_t lent = body_room_->bytes();
-  const bool is_full = host_.body_bytes - lent + wanted > host_.most_body_bytes;
-  if (is_full || !body_room_->grow_to(wanted)) {
+  if (!body_room_) {
+    body_room_ = host_.admission.memory()->lend(0, request_->share, MemoryUse::kBody);
+  }
+  if (wanted > kFirstBodyBytes && !body_room_->grow_to(wanted)) {
     if (host_.first_body == nullptr) host_.first_body = this;
     if (host_.first_body != this || !body_room_->grow_to(wanted, true)) return false;
   }
   is_short_ = false;
-  host_.body_bytes += wanted - lent;
   body.text.reserve(wanted);
   // Beast reads as much at once as its buffer holds.
   if (wanted > kFirstBodyBytes) buffer_.reserve(std::min(wanted, kPieceBytes));
@@ -370,73 +376,7 @@ void Connection::give_back_body() {
   if (request_) std::string().swap(request_->body);
   parser_.reset();
   if (host_.first_body == this) host_.first_body = nullptr;
-  if (!body_room_) return;
-  host_.body_bytes -= body_room_->bytes();
   body_room_.reset();
-}
-
-Problem Connection::problem_of_head(const Status& status) const {
-  const Limits& limits = host_.limits;
-  if (status == beast_http::error::body_limit) {
-    return Problem(413, "the body is larger than " + std::to_string(limits.body_bytes) +
-                            " bytes; send less at once")
-        .beyond("body_bytes");
-  }
-  if (has_head_ && framing_ > limits.header_bytes) {
-    return Problem(431, "extensions and trailers of the body in chunks take more than " +
-                            std::to_string(limits.header_bytes) + " bytes; send fewer")
-        .beyond("header_bytes");
-  }
-  if (status == beast_http::error::header_limit || status == beast_http::error::buffer_overflow) {
-    const std::string_view begun(static_cast<const char*>(buffer_.data().data()), buffer_.size());
-    const bool has_line = parser_->get().target().size() > 0
-                              ? parser_->get().target().size() <= limits.request_line_bytes
-                              : begun.find("\r\n") < limits.request_line_bytes;
-    if (!has_line) {
-      return Problem(414, "the first line of the request is longer than " +
-                              std::to_string(limits.request_line_bytes) +
-                              " bytes; send the question as the body of a POST")
-          .beyond("request_line_bytes");
-    }
-    return Problem(431, "the header lines take more than " + std::to_string(limits.header_bytes) +
-                            " bytes; send fewer")
-        .beyond("header_bytes");
-  }
-  return {400, "the request is no HTTP/1.1: " + status.message()};
-}
-
-/// The deadline of reading passed.
-void Connection::refuse_late() {
-  if (is_short_) {
-    return refuse(
-        Problem(503, "the requests at hand take all memory that the server has; come again later")
-            .beyond("memory_bytes")
-            .retry_after(1));
-  }
-  // Nothing came before the deadline: there is nobody to tell.
-  if (buffer_.size() == 0 && !parser_->got_some()) return close();
-  refuse(Problem(408, "the request did not arrive within " +
-                          std::to_string(host_.limits.reading.count()) + " ms; send it at once")
-             .beyond("reading"));
-}
-
-void Connection::refuse(const Problem& problem) {
-  is_short_ = false;
-  if (!has_head_) {
-    request_ = std::make_shared<Request>();
-    request_->id = host_.next_request++;
-    request_->remote = peer_.to_string();
-    if (parser_) {
-      const auto& target = parser_->get().target();
-      request_->path = path_of(
-          !target.empty()
-              ? std::string_view(target.data(), target.size())
-              : target_of_line({static_cast<const char*>(buffer_.data().data()), buffer_.size()}));
-    }
-  }
-  Response response = problem.response();
-  host_.service.finish(*request_, response);
-  write(std::move(response), true);
 }
 
 // --- time

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <boost/asio/ip/tcp.hpp>
@@ -33,8 +34,6 @@ struct ConnectionHost {
   Admission& admission;
   Turns& turns;  ///< Of answers that take more than one piece.
   std::uint64_t next_request = 1;
-  std::uint64_t body_bytes = 0;  ///< Lent to bodies that arrive or are answered.
-  std::uint64_t most_body_bytes = 0;
   /// The one body that waits for memory and goes on beyond their share: else many that have a part of
   /// theirs might wait for each other.
   const void* first_body = nullptr;
@@ -65,7 +64,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Closes the connection now; a question that it asked is stopped.
   void abort();
 
-  /// Since when it waits for the whole head of a request; none: it does something else.
+  /// Since when it waits for the whole head of a request, or for the client to close; none: it does
+  /// something else.
   [[nodiscard]] std::optional<Clock::time_point> waits_since() const;
   /// The share of who connects.
   [[nodiscard]] const std::string& peer() const noexcept { return peer_share_; }
@@ -92,6 +92,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   [[nodiscard]] std::optional<Problem> problem_of_framing() const;
   [[nodiscard]] std::shared_ptr<Request> request_of_head();
   void check_head();
+  [[nodiscard]] bool skip_empty_lines();
+  [[nodiscard]] std::string_view begun_line() const;
+  [[nodiscard]] bool expects_continue() const;
   [[nodiscard]] bool is_worth_reading() const;
   [[nodiscard]] bool begin_body();
   [[nodiscard]] bool make_room_for_body();

@@ -39,6 +39,18 @@ Problem problem_of_waiting(WaitsFor lack, const Limits& limits) {
       .retry_after(1);
 }
 
+/// The memory of a question becomes that of its answer. What one piece holds the system takes at once.
+void keep_for_answer(const std::shared_ptr<MemoryBudget::Lease>& lease, Response& response) {
+  if (!lease || response.held != lease) return;
+  if (lease->bytes() <= kPieceBytes) return response.held.reset();
+  if (lease->change_use(MemoryUse::kAnswer)) return;
+  throw Problem(503,
+                "answers that clients have not taken yet hold all memory that the server has for "
+                "them; come again later")
+      .beyond("memory_bytes")
+      .retry_after(1);
+}
+
 }  // namespace
 
 void Connection::compute() {
@@ -78,6 +90,7 @@ void Connection::answer(const std::shared_ptr<Request>& request,
   try {
     if (request->stop.stop_requested()) throw Problem(503, "nobody waits for the answer");
     response = host_.service.answer(*request);
+    keep_for_answer(request->memory, response);
   } catch (...) {
     // given_up_ is read on the thread of connections, where it is written.
     auto thrown = std::current_exception();

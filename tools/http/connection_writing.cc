@@ -141,6 +141,7 @@ void Connection::end_of_answer(bool is_whole) {
 
 void Connection::linger() {
   state_ = State::kLingering;
+  waits_since_ = Clock::now();
   Status ignored;
   socket_.shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
   set_deadline(kLinger, [this] { close(); });

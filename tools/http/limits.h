@@ -18,12 +18,15 @@ struct Limits {
   std::size_t header_bytes = std::size_t{8} << 10;         ///< All header lines. Beyond: 431.
   std::size_t body_bytes = std::size_t{1} << 20;           ///< Beyond: 413.
   /// Beyond, the longest idle one closes; where none is idle: 503. A client may have three quarters
-  /// of them, and of the last quarter those that have less than an eighth of all.
+  /// of them, and of the last quarter those that have less than an eighth of all, or none.
   std::size_t connections = 1024;
   std::size_t waiting = 64;  ///< Questions that wait in each lane. Beyond: 503.
   std::size_t threads = 1;   ///< Questions of each lane that are computed at once.
   /// Memory of bodies, questions and answers, which wait where there is none at the moment.
   std::uint64_t memory_bytes = std::uint64_t{192} << 20;
+  /// What one question of the lane of points takes at most, and one of any lane: for so much of the
+  /// memory there is always room beside answers that clients take slowly.
+  std::uint64_t point_bytes = 0, question_bytes = 0;
 
   // Absolute: no byte that arrives makes them longer.
   std::chrono::milliseconds reading{5000};     ///< The head, and again the body. Beyond: 408.

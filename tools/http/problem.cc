@@ -37,6 +37,7 @@ Response Problem::response() const {
   if (!methods_.empty()) response.add("Allow", methods_);
   if (whole_bytes_) response.add("Content-Range", "bytes */" + std::to_string(*whole_bytes_));
   if (status_ == 401) response.add("WWW-Authenticate", "Bearer");
+  if (status_ == 415) response.add("Accept-Encoding", "identity");
   return response;
 }
 

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,10 +22,14 @@ struct Range {
   std::uint64_t first, last;
 };
 
+/// One beyond all that there can be is the largest one.
 std::optional<std::uint64_t> whole_number(std::string_view text) {
   std::uint64_t number = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (status != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  const bool is_beyond = status == std::errc::result_out_of_range;
+  if (is_beyond) number = std::numeric_limits<std::uint64_t>::max();
+  if ((status != std::errc() && !is_beyond) || end != text.data() + text.size())
+    return std::nullopt;
   return number;
 }
 

@@ -2,6 +2,7 @@
 #include "tools/http/request.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 
 #include "tools/http/problem.h"
@@ -89,7 +90,11 @@ Parameters parse_form(std::string_view query) {
 Target parse_target(std::string_view target) {
   // A client of a proxy names the whole URL.
   for (const std::string_view scheme : {"http://", "https://"}) {
-    if (!target.starts_with(scheme)) continue;
+    const bool is_of_scheme =
+        target.size() >= scheme.size() &&
+        std::equal(scheme.begin(), scheme.end(), target.begin(),
+                   [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+    if (!is_of_scheme) continue;
     target.remove_prefix(scheme.size());
     const std::size_t root = target.find_first_of("/?");
     target = root == std::string_view::npos ? std::string_view("/") : target.substr(root);

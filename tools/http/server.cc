@@ -33,8 +33,25 @@ constexpr std::chrono::milliseconds kPause{20};
 /// Connections beyond the limit: they are answered what is quick, or told that there are too many.
 constexpr std::size_t kMostExtra = 16;
 
+/// Points keep what all of their threads take, as far as there is room beside one whole question.
+/// Bodies have a sixth, but room for some at least; answers what is left beside all of these, but a
+/// quarter at least.
+MemoryParts parts_of(const Limits& limits) {
+  const auto without = [](std::uint64_t all, std::uint64_t part) {
+    return all - std::min(all, part);
+  };
+  MemoryParts parts;
+  parts.all = limits.memory_bytes;
+  parts.points =
+      std::min(limits.threads * limits.point_bytes, without(parts.all, limits.question_bytes));
+  parts.most_bodies = std::max<std::uint64_t>(parts.all / 6, std::uint64_t{4} * limits.body_bytes);
+  parts.most_answers = std::max(
+      parts.all / 4, without(parts.all, parts.points + parts.most_bodies + limits.question_bytes));
+  return parts;
+}
+
 Admission::Sizes sizes_of(const Limits& limits) {
-  return {limits.threads, limits.waiting, limits.memory_bytes};
+  return {limits.threads, limits.waiting, parts_of(limits)};
 }
 
 tcp::endpoint endpoint_of(const std::string& address) {
@@ -67,9 +84,6 @@ struct Server::Inside {
         acceptor(io),
         pause(io),
         admission(sizes_of(limits), [&service] { service.rest(); }) {
-    // A sixth of the memory, but room for some bodies at least.
-    host.most_body_bytes =
-        std::max<std::uint64_t>(limits.memory_bytes / 6, std::uint64_t{4} * limits.body_bytes);
     const tcp::endpoint endpoint = endpoint_of(address);
     Status status;
     acceptor.open(endpoint.protocol(), status);
@@ -141,8 +155,8 @@ struct Server::Inside {
     const std::size_t own = peer == of_peer.end() ? 0 : peer->second;
     const std::size_t now = connections.size() - extras;
     const bool is_last_quarter = now >= limits.connections - limits.connections / 4;
-    const bool has_its_share =
-        !made.is_of_proxy() && is_last_quarter && own >= limits.connections / 8;
+    const bool has_its_share = !made.is_of_proxy() && is_last_quarter &&
+                               own >= std::max<std::size_t>(1, limits.connections / 8);
     if (now < limits.connections && !has_its_share) return true;
     if (has_its_share) {
       return close_a_waiting_one(

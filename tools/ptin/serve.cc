@@ -83,7 +83,7 @@ serve::ServeOptions options_of(const ServeCommand& command) {
     if (equals == std::string::npos) refuse("expected NAME=VALUE, as points=1000", "--limit");
     serve::set_limit(options, limit.substr(0, equals), limit.substr(equals + 1));
   }
-  if (options.http.memory_bytes == 0) options.http.memory_bytes = serve::default_memory(options);
+  serve::divide_memory(options);
   if (options.question.question_memory > options.http.memory_bytes) {
     refuse("one question may take " + std::to_string(options.question.question_memory) +
            " bytes, and all together " + std::to_string(options.http.memory_bytes) +

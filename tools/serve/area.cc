@@ -240,7 +240,8 @@ std::span<const ParameterFact> area_parameters() noexcept { return kAreaParamete
 http::Response answer_area(const Asked& asked) {
   static_cast<void>(asked_names(asked.question));
   const OfferedFormat& format = format_of(asked, kAreaFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   const Polygon polygon = polygon_of(asked, places);
   const Grid grid = grid_of(asked, places, polygon);
   Inner inner = inner_of(asked, grid, polygon);

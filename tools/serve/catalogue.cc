@@ -107,14 +107,22 @@ std::shared_ptr<const Collection> Catalogue::find(const std::string& id) const {
 std::vector<std::string> Catalogue::damaged() const {
   std::vector<std::string> names;
   for (const auto& [id, entry] : entries_) {
-    if (entry->is_damaged) names.push_back(id);
+    if (entry->is_damaged || entry->has_bad_pages) names.push_back(id);
   }
   return names;
 }
 
+void Catalogue::note_damage(const Collection& collection) const {
+  const auto found = entries_.find(collection.id);
+  if (found == entries_.end()) return;
+  const std::lock_guard lock(found->second->mutex);
+  if (found->second->open.get() == &collection) found->second->has_bad_pages = true;
+}
+
 void Catalogue::check_whole(const std::string& id) const {
   const auto found = entries_.find(id);
-  if (found == entries_.end() || !found->second->is_damaged) return;
+  if (found == entries_.end()) return;
+  if (!found->second->is_damaged && !found->second->has_bad_pages) return;
   throw Error(ErrorCode::corruption, "the file was written over while it was served",
               found->second->path);
 }
@@ -147,6 +155,7 @@ std::shared_ptr<const Collection> Catalogue::current(const std::string& id, Entr
     entry.open = std::make_shared<Collection>(id, entry.path);
     entry.is_stale = false;
     entry.is_damaged = false;
+    entry.has_bad_pages = false;
   } catch (const std::exception& error) {
     if (is_damaged(error) && !is_remote(entry.path))
       entry.next_try = std::chrono::steady_clock::time_point::max();

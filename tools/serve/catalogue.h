@@ -66,7 +66,10 @@ class Catalogue {
   [[nodiscard]] std::shared_ptr<const Collection> find(const std::string& id) const;
   /// Whether there is one of this name; nothing is opened, and no file is looked at.
   [[nodiscard]] bool has(const std::string& id) const { return entries_.count(id) != 0; }
-  /// Those whose open file was written over in place and is no terrain any more, by name.
+  /// A question met a page that is damaged: known until another file takes the place of this one.
+  void note_damage(const Collection& collection) const;
+  /// Those whose open file was written over in place and is no terrain any more, or has pages that are
+  /// damaged, as far as questions met them, by name.
   [[nodiscard]] std::vector<std::string> damaged() const;
   /// @throws Error corruption  the collection is one of those
   void check_whole(const std::string& id) const;
@@ -80,7 +83,8 @@ class Catalogue {
     std::shared_ptr<const Collection> open;
     FileIdentity refused;  ///< That could not be opened.
     bool is_stale = false;
-    std::atomic<bool> is_damaged = false;  ///< Read without the mutex.
+    std::atomic<bool> is_damaged = false;     ///< Read without the mutex, as the next one.
+    std::atomic<bool> has_bad_pages = false;  ///< A question met one in what is open.
     /// What is damaged is not tried again; what may be a matter of the moment is, from then on.
     std::chrono::steady_clock::time_point next_try;
   };

@@ -43,7 +43,13 @@ class Builder : public nlohmann::json::json_sax_t {
     member_ = std::move(name);
     return true;
   }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception&) override {
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::json::exception& error) override {
+    constexpr int kOutOfRange = 406;
+    if (error.id == kOutOfRange) {
+      throw Problem(400, "a number of the JSON is larger than any that is answered, 1.8e308")
+          .at(name_);
+    }
     throw Problem(400, "this is no JSON").at(name_);
   }
 

@@ -38,7 +38,8 @@ std::span<const ParameterFact> highest_parameters() noexcept { return kHighestPa
 
 http::Response answer_highest(const Asked& asked) {
   static_cast<void>(format_of(asked, kHighestFormats));
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   HighestRequest request;
   if (const auto bbox = asked.question.bbox()) request.region = places.to_terrain(*bbox);
   request.lowest = asked.question.flag("lowest");

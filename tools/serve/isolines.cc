@@ -79,7 +79,8 @@ std::span<const ParameterFact> isolines_parameters() noexcept { return kIsolines
 
 http::Response answer_isolines(const Asked& asked) {
   static_cast<void>(format_of(asked, kIsolinesFormats));
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   IsolineRequest request;
   request.levels = levels_of(asked);
   if (request.levels.size() > kMostAnswered) throw_many_levels("level");

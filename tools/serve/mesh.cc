@@ -62,7 +62,8 @@ std::span<const ParameterFact> mesh_parameters() noexcept { return kMeshParamete
 
 http::Response answer_mesh(const Asked& asked) {
   const OfferedFormat& format = format_of(asked, kMeshFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   RefineRequest request;
   request.detail = detail_of(asked);
   const std::size_t most = asked.options.question.vertices;

@@ -185,7 +185,7 @@ struct Places::Inside {
 };
 
 Places::Places(const CrsFacts& terrain, const std::string& asked,
-               const std::optional<Window>& bounds)
+               const std::optional<Window>& bounds, const std::string& who)
     : inside_(std::make_unique<Inside>()),
       turn_(is_in_degrees(terrain) ? kTurn : 0),
       bounds_(bounds) {
@@ -202,7 +202,7 @@ Places::Places(const CrsFacts& terrain, const std::string& asked,
     throw http::Problem(400, "the CRS of this collection is not known; ask with crs=native")
         .at("crs");
   }
-  inside_->ways = both_ways(*name, terrain.wkt);
+  inside_->ways = both_ways(*name, terrain.wkt, who);
   if (bounds && !terrain.geographic) {
     turn_ = turn_of_cylinder(back(*both_ways("OGC:CRS84", terrain.wkt)), *bounds);
   }

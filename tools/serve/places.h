@@ -25,10 +25,11 @@ class Places {
   /// @param bounds Of the terrain, map units. Where their x turns around the Earth (degrees, and the
   ///               planes of cylinders such as Mercator's), a position of the client is taken into
   ///               their turn: -179.96 is 180.04 of a terrain that lies across the antimeridian.
+  /// @param who    As both_ways() takes it.
   /// @throws http::Problem 400  no CRS that is known here; the terrain's is not known; as both_ways()
   ///                       503  as both_ways()
   Places(const CrsFacts& terrain, const std::string& asked,
-         const std::optional<Window>& bounds = std::nullopt);
+         const std::optional<Window>& bounds = std::nullopt, const std::string& who = {});
   ~Places();
   Places(const Places&) = delete;
   Places& operator=(const Places&) = delete;

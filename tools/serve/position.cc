@@ -71,7 +71,8 @@ std::span<const ParameterFact> position_parameters() noexcept { return kPosition
 http::Response answer_position(const Asked& asked) {
   static_cast<void>(asked_names(asked.question));
   const OfferedFormat& format = format_of(asked, kPlaceFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   const std::vector<MapPoint> client = points_of_wkt(asked.question.needed("coords"), "coords");
   check_count(client.size(), asked.options.question.points, "positions", "points", "coords");
   std::vector<MapPoint> at = client;

@@ -145,7 +145,8 @@ std::string coverage_of(const AlongLines& along, const Asked& asked, const Place
 
 http::Response respond(const Asked& asked, std::span<const OfferedFormat> formats) {
   const OfferedFormat& format = format_of(asked, formats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   const AlongLines along = walk_lines(asked, places);
   std::string text;
   if (format.name == "csv") {

@@ -42,7 +42,7 @@ enum class MetricsFor : std::uint8_t {
 struct ServeOptions {
   std::vector<ServedFile> files;
   std::string listen = "127.0.0.1:8080";
-  http::Limits http;  ///< Its memory is that of default_memory().
+  http::Limits http;  ///< Its memory is divided by divide_memory().
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.
@@ -52,12 +52,16 @@ struct ServeOptions {
   std::string version;  ///< Of the program; part of every ETag.
 };
 
-/// The memory with which every lane can be full: sweeps and tiles with all of a question's, points
-/// with a quarter, and a sixth of it all for bodies, and answers that are written.
-[[nodiscard]] inline std::uint64_t default_memory(const ServeOptions& options) noexcept {
+/// What questions of each lane take of the memory, and, where it is not given, all of it: so much that
+/// every lane can be full, sweeps and tiles with all of a question's, points with a quarter, and a
+/// sixth of it all for bodies, and answers that are written.
+inline void divide_memory(ServeOptions& options) noexcept {
   const std::uint64_t threads = options.http.threads, one = options.question.question_memory;
+  options.http.question_bytes = one;
+  options.http.point_bytes = one / 4;
+  if (options.http.memory_bytes != 0) return;
   const std::uint64_t lanes = (threads + 1) * one + threads * (one / 4);
-  return lanes + lanes / 5 + (std::uint64_t{16} << 20);
+  options.http.memory_bytes = lanes + lanes / 5 + (std::uint64_t{16} << 20);
 }
 
 }  // namespace ptin::serve

@@ -161,7 +161,8 @@ std::span<const ParameterFact> sight_parameters() noexcept { return kSightParame
 
 http::Response answer_sight(const Asked& asked) {
   static_cast<void>(format_of(asked, kSightFormats));
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   const std::vector<SightPair> pairs = pairs_of(asked, places);
   constexpr std::size_t kFew = 16;  // For which a coarse level of the whole terrain does not pay.
   SightSolver solver = asked.terrain().sight_lines(

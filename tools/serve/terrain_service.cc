@@ -314,7 +314,13 @@ Response TerrainService::compute(const Request& request, const Match& found,
                     collection,
                     found.rest,
                     {lease ? lease->bytes() : 0, request.stop}};
-  Response response = found.endpoint->answer(asked);
+  Response response;
+  try {
+    response = found.endpoint->answer(asked);
+  } catch (const Error& error) {
+    if (collection && error.code() == ErrorCode::corruption) catalogue_.note_damage(*collection);
+    throw;
+  }
   if (response.held || response.long_body) return response;
   if (!is_get(request) || !collection) {
     pack(http::takes_gzip(request.header("accept-encoding").value_or("")), response);
@@ -332,7 +338,8 @@ Response TerrainService::options_of(const Request& request) const {
   if (!options_.cors_origin.empty() && request.header("access-control-request-method")) {
     response.add("Access-Control-Allow-Methods", methods);
     response.add("Access-Control-Allow-Headers",
-                 "Content-Type, Authorization, If-None-Match, Range");
+                 "Content-Type, Authorization, If-Match, If-None-Match, If-Modified-Since, "
+                 "If-Unmodified-Since, Range, If-Range");
     response.add("Access-Control-Max-Age", "86400");
   }
   return response;

@@ -114,47 +114,66 @@ void throw_beyond(MakingTime::Seconds wait) {
 }
 
 /// A copy of what other threads have made; none: nobody made it, and time for it is taken.
-std::optional<Made> made_by_others(const Kept::Key& key) {
+std::optional<Made> made_by_others(const Kept::Key& key, const std::string& who) {
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
   if (const Made* made = all.kept.find(key)) return copy_of(*made);
   if (key.first == kLonLat) return std::nullopt;
-  if (const auto wait = all.time.take(MakingTime::Clock::now()); wait.count() > 0)
+  if (const auto wait = all.time.take(MakingTime::Clock::now(), who); wait.count() > 0)
     throw_beyond(wait);
   return std::nullopt;
 }
 
-Made make_for_all(const Kept::Key& key) {
+Made make_for_all(const Kept::Key& key, const std::string& who) {
   const auto begun = MakingTime::Clock::now();
   Made made = make(key.first, key.second);
   Shared& all = shared();
   const std::lock_guard lock(all.mutex);
-  if (key.first != kLonLat) all.time.settle(MakingTime::Clock::now() - begun);
+  if (key.first != kLonLat) all.time.settle(MakingTime::Clock::now() - begun, who);
   all.kept.keep(key, copy_of(made));
   return made;
 }
 
 }  // namespace
 
-MakingTime::Seconds MakingTime::take(Clock::time_point now) {
-  if (last_ != Clock::time_point{}) {
-    left_ = std::min(most_, left_ + share_ * Seconds(now - last_));
-  }
+MakingTime::Seconds MakingTime::take(Clock::time_point now, const std::string& who) {
+  if (last_ != Clock::time_point{}) come_back(share_ * Seconds(now - last_));
   last_ = now;
   if (left_.count() <= 0) return std::max(Seconds(1), -left_ / share_);
-  left_ -= kAhead;
+  const auto spent = spent_.find(who);
+  if (spent != spent_.end() && spent->second > left_) {
+    return std::max(Seconds(1), (spent->second - left_) / share_);
+  }
+  spend(kAhead, who);
   return Seconds(0);
 }
 
-void MakingTime::settle(Seconds spent) { left_ -= spent - kAhead; }
+void MakingTime::settle(Seconds spent, const std::string& who) { spend(spent - kAhead, who); }
 
-std::shared_ptr<const BothWays> both_ways(const std::string& client, const std::string& wkt) {
+void MakingTime::spend(Seconds time, const std::string& who) {
+  left_ -= time;
+  if (!who.empty()) spent_[who] += time;
+}
+
+/// To everybody in proportion to what they spent.
+void MakingTime::come_back(Seconds time) {
+  constexpr Seconds kNothing{0.001};
+  left_ = std::min(most_, left_ + time);
+  Seconds all{0};
+  for (const auto& [who, spent] : spent_) all += spent;
+  const double stays = all > time ? 1.0 - time / all : 0.0;
+  for (auto& [who, spent] : spent_) spent *= stays;
+  std::erase_if(spent_, [&](const auto& entry) { return entry.second < kNothing; });
+}
+
+std::shared_ptr<const BothWays> both_ways(const std::string& client, const std::string& wkt,
+                                          const std::string& who) {
   static thread_local Kept own;
   const Kept::Key key{client, wkt};
   const Made* made = own.find(key);
   if (made == nullptr) {
-    std::optional<Made> others = made_by_others(key);
-    own.keep(key, others ? std::move(*others) : make_for_all(key));
+    std::optional<Made> others = made_by_others(key, who);
+    own.keep(key, others ? std::move(*others) : make_for_all(key, who));
     made = own.find(key);
   }
   if (!made->ways) throw refused(made->refusal);

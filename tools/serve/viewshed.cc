@@ -138,7 +138,8 @@ std::span<const ParameterFact> viewshed_parameters() noexcept { return kViewshed
 
 http::Response answer_viewshed(const Asked& asked) {
   const bool as_picture = format_of(asked, kViewshedFormats).name == "png";
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds);
+  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+                      asked.request.share);
   const ViewshedRequest request = request_of(asked, places, as_picture);
   if (as_picture) check_pixels(asked, request);
   const Viewshed seen = viewshed_of(asked, request);
