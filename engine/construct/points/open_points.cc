@@ -21,7 +21,9 @@ constexpr std::size_t kBatchPoints = 4096;
 /// Text, in batches.
 class TextPoints final : public PointStream {
  public:
-  TextPoints(const std::string& path, const PointChoice& choice, const PointPart& part)
+  /// @param nodata  Takes the place of what comments say means no height.
+  TextPoints(const std::string& path, const PointChoice& choice, std::optional<double> nodata,
+             const PointPart& part)
       : is_whole_(part.is_whole()), reader_(path, choice.columns, part) {
     const GdalSession session;
     VSIStatBufL status;
@@ -33,6 +35,8 @@ class TextPoints final : public PointStream {
     if (facts_.units.plane == "degree") {
       facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
     }
+    take_comments(nodata.has_value());
+    reader_.declared().tell(path, warnings_);
     note_unknown_units(path);
   }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
@@ -40,10 +44,15 @@ class TextPoints final : public PointStream {
     batch.clear();
     SourcePoint point;
     while (batch.size() < kBatchPoints && reader_.next(point)) {
-      batch.push_back(point);
+      if (nodata_ && to_double(point.z) == *nodata_) {
+        ++left_out_;
+      } else {
+        batch.push_back(point);
+      }
     }
     return !batch.empty();
   }
+  [[nodiscard]] std::uint64_t left_out() const noexcept override { return left_out_; }
   [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::optional<RowsOfPart> rows() const override {
     return is_whole_ ? std::nullopt : std::optional(reader_.rows());
@@ -53,6 +62,16 @@ class TextPoints final : public PointStream {
 
  private:
   bool is_whole_;
+  /// Takes what comments declare; the names of columns go before them.
+  void take_comments(bool is_nodata_told) {
+    const DeclaredComments& declared = reader_.declared();
+    facts_.crs = declared.crs();
+    facts_.vertical_crs = declared.vertical_crs();
+    const DeclaredUnits units = declared.units();
+    facts_.units.plane = facts_.units.plane.empty() ? units.plane : facts_.units.plane;
+    facts_.units.heights = facts_.units.heights.empty() ? units.heights : facts_.units.heights;
+    nodata_ = is_nodata_told ? std::nullopt : declared.nodata();
+  }
   /// Warns of what names of columns say in brackets and nobody understands.
   void note_unknown_units(const std::string& path) {
     const std::string remark = reader_.unknown_unit();
@@ -68,7 +87,8 @@ class TextPoints final : public PointStream {
   XyzReader reader_;
   PointStreamFacts facts_;
   SourceWarnings warnings_;
-  std::uint64_t total_ = 0;
+  std::optional<double> nodata_;  ///< That comments declare.
+  std::uint64_t total_ = 0, left_out_ = 0;
 };
 
 /// @throws Error invalid_argument  a choice means nothing for the format of the file
@@ -108,7 +128,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
     case PointFormat::kLas:
       return std::make_unique<LasReader>(path, choice, part);
     case PointFormat::kText:
-      return std::make_unique<TextPoints>(path, choice, part);
+      return std::make_unique<TextPoints>(path, choice, nodata, part);
     case PointFormat::kLayer:
       break;
   }

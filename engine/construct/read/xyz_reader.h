@@ -39,6 +39,13 @@ class XyzReader {
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
+  /// What comments declare before the first row, which this reads.
+  /// @throws Error as next()
+  [[nodiscard]] const DeclaredComments& declared() {
+    static_cast<void>(table_.header());
+    return table_.declared();
+  }
+
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
   /// What the rows tell that were read.
