@@ -24,6 +24,7 @@ set(public_headers
     engine/construct/points/open_points.h
     engine/construct/process_limits.h
     engine/construct/read/column_names.h
+    engine/construct/read/declared_comments.h
     engine/construct/read/input_kind.h
     engine/construct/read/layer_choice.h
     engine/construct/read/line_file.h

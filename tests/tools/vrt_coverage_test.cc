@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Samples of a VRT that none of its sources covers are void, whatever GDAL hands out for them.
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,25 @@ class VrtCoverage : public ::testing::Test {
                "<GeoTransform>500000, 30, 0, 4000000, 0, -30</GeoTransform>"
                R"(<VRTRasterBand dataType=")" +
                    type + R"(" band="1">)" + of_band + "</VRTRasterBand>" + more_bands +
+                   "</VRTDataset>");
+  }
+  /// A VRT that warps a file to the same places, on a grid of so many columns.
+  void make_warp(const std::string& type, const std::string& name, int columns) {
+    const std::string place = "500000,30,0,4000000,0,-30";
+    write_file(folder_.file("s.vrt"),
+               R"(<VRTDataset subClass="VRTWarpedDataset" rasterYSize="4" rasterXSize=")" +
+                   std::to_string(columns) + R"("><SRS>EPSG:32611</SRS><GeoTransform>)" + place +
+                   R"(</GeoTransform><VRTRasterBand dataType=")" + type +
+                   R"(" band="1" subClass="VRTWarpedRasterBand"></VRTRasterBand>)"
+                   "<BlockXSize>8</BlockXSize><BlockYSize>4</BlockYSize><GDALWarpOptions>"
+                   "<WorkingDataType>" +
+                   type +
+                   R"(</WorkingDataType><Option name="INIT_DEST">0</Option>)"
+                   R"(<SourceDataset relativeToVRT="1">)" +
+                   name + "</SourceDataset><Transformer><GenImgProjTransformer><SrcGeoTransform>" +
+                   place + "</SrcGeoTransform><DstGeoTransform>" + place +
+                   "</DstGeoTransform></GenImgProjTransformer></Transformer>"
+                   R"(<BandList><BandMapping src="1" dst="1"/></BandList></GDALWarpOptions>)"
                    "</VRTDataset>");
   }
   void expect_void(const std::string& name, int count, const std::vector<std::string>& more = {}) {
@@ -108,6 +128,14 @@ TEST_F(VrtCoverage, LooksThroughVrtsInVrts) {
   }
 }
 
+TEST_F(VrtCoverage, FindsFilesInTheFolderOfTheVrtThatNamesThem) {
+  std::filesystem::create_directory(folder_.file("inner"));
+  make_tile("inner/a.tif", "Int16", 1);
+  make_vrt("inner/s.vrt", "Int16", source("a.tif", 0) + source("a.tif", 8));
+  make_vrt("s.vrt", "Int16", source("inner/s.vrt", 0, "", 12));
+  expect_void("s.vrt", 16);
+}
+
 TEST_F(VrtCoverage, EndsWhereAVrtNamesItself) {
   make_tile("a.tif", "Int16", 1);
   make_vrt("s.vrt", "Int16", source("a.tif", 0) + source("s.vrt", 4));
@@ -128,28 +156,18 @@ TEST_F(VrtCoverage, LeavesAlphaAndMasksAsTheyAre) {
   expect_void("mask.vrt", 33);
 }
 
+TEST_F(VrtCoverage, LeavesGapsOfAVrtThatIsWarpedVoid) {
+  make_tile("a.tif", "Float32", 1);
+  make_vrt("gap.vrt", "Float32", source("a.tif", 0) + source("a.tif", 8));
+  make_warp("Float32", "gap.vrt", 12);
+  expect_void("s.vrt", 16);
+}
+
 TEST_F(VrtCoverage, LeavesWhatAWarpDoesNotCoverVoid) {
   for (const std::string type : {"Int16", "Float32"}) {
     SCOPED_TRACE(type);
     make_tile("a.tif", type, 1);
-    // From the tile to a grid that reaches 4 samples farther to the east.
-    write_file(folder_.file("s.vrt"),
-               R"(<VRTDataset rasterXSize="8" rasterYSize="4" subClass="VRTWarpedDataset">)"
-               "<SRS>EPSG:32611</SRS>"
-               "<GeoTransform>500000, 30, 0, 4000000, 0, -30</GeoTransform>"
-               R"(<VRTRasterBand dataType=")" +
-                   type +
-                   R"(" band="1" subClass="VRTWarpedRasterBand"></VRTRasterBand>)"
-                   "<BlockXSize>8</BlockXSize><BlockYSize>4</BlockYSize><GDALWarpOptions>"
-                   "<WorkingDataType>" +
-                   type +
-                   R"(</WorkingDataType><Option name="INIT_DEST">0</Option>)"
-                   R"(<SourceDataset relativeToVRT="1">a.tif</SourceDataset><Transformer>)"
-                   "<GenImgProjTransformer><SrcGeoTransform>500000,30,0,4000000,0,-30"
-                   "</SrcGeoTransform><DstGeoTransform>500000,30,0,4000000,0,-30"
-                   "</DstGeoTransform></GenImgProjTransformer></Transformer>"
-                   R"(<BandList><BandMapping src="1" dst="1"/></BandList></GDALWarpOptions>)"
-                   "</VRTDataset>");
+    make_warp(type, "a.tif", 8);
     expect_void("s.vrt", 16);
   }
 }

@@ -141,7 +141,7 @@ class PointSamples final : public SourceSamples {
 
 void PointSamples::read_text(const std::string& path, const std::stop_token& stop) {
   constexpr std::uint64_t kLinesBetweenLooks = 4096;
-  TextSamples text(path, choices_.points.columns);
+  TextSamples text(path, choices_.points.columns, choices_.nodata.has_value());
   TextSamples::Line line;
   std::uint64_t lines = 0;
   while (text.next(line)) {
@@ -196,7 +196,7 @@ class FirstPoints {
   FirstPoints(const std::string& path, const StoreFile& store, const SampleResources& resources)
       : facts_(store.facts()), choices_(choices_of(store)) {
     if (is_text(path) && choices_.points.z_field.empty() && choices_.points.layer.empty()) {
-      TextSamples text(path, choices_.points.columns);
+      TextSamples text(path, choices_.points.columns, choices_.nodata.has_value());
       TextSamples::Line line;
       for (int lines = 0; lines < kMost && text.next(line); ++lines) {
         if (line.misfit.empty()) add(line.point);

@@ -202,8 +202,12 @@ struct TextSamples::File {
   }
 };
 
-TextSamples::TextSamples(std::string path, const std::vector<std::string>& columns)
-    : path_(std::move(path)), file_(std::make_unique<File>()), given_(columns) {
+TextSamples::TextSamples(std::string path, const std::vector<std::string>& columns,
+                         bool is_nodata_told)
+    : path_(std::move(path)),
+      file_(std::make_unique<File>()),
+      given_(columns),
+      is_nodata_told_(is_nodata_told) {
   file_->handle = VSIFOpenL(((is_packed(path_) ? "/vsigzip/" : "") + path_).c_str(), "rb");
   if (file_->handle == nullptr) throw Error(ErrorCode::io_error, "cannot be read", path_);
 }
@@ -264,9 +268,14 @@ bool TextSamples::next_text(std::string& text) {
     if (!next_line(line)) return false;
     if (number_ == 1 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
     if (trimmed(line).empty()) continue;
+    const std::string_view start = trimmed(line).substr(0, 4);  // Excel's "sep=;"
+    const bool is_of_excel = start == "sep=" || start == "SEP=" || start == "Sep=";
+    if (field_count_ == 0 && is_of_excel && trimmed(line).size() <= 5) continue;
     const std::optional<std::string_view> comment = text_of_comment(trimmed(line));
     if (!comment) break;
-    if (field_count_ == 0) comments_.emplace_back(comment->substr(0, 4096));
+    if (field_count_ != 0) continue;
+    comments_.emplace_back(comment->substr(0, 4096));
+    declared_.note(*comment);
   }
   first_ = number_;
   text = line;
@@ -413,7 +422,8 @@ bool TextSamples::next(Line& line) {
     }
     line = {first_, {}, {}};
     read_numbers(line);
-    return true;
+    const std::optional<double> nodata = is_nodata_told_ ? std::nullopt : declared_.nodata();
+    if (!nodata || !line.misfit.empty() || line.point[2] != *nodata) return true;
   }
   return false;
 }

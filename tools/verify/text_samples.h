@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/read/declared_comments.h"
+
 namespace ptin::tools {
 
 /// The points of one file of text. Lines end in LF, CR LF or CR. The first line that is neither empty
@@ -24,9 +26,11 @@ namespace ptin::tools {
 /// order mark is passed over. A file whose name ends in .gz, in any case, is unpacked on the way.
 class TextSamples {
  public:
-  /// @param columns  The names of the columns that the build was given; empty: none.
+  /// @param columns         The names of the columns that the build was given; empty: none.
+  /// @param is_nodata_told  The build was given a height that means none: one that comments declare
+  ///                        does not count.
   /// @throws Error not_found, io_error
-  TextSamples(std::string path, const std::vector<std::string>& columns);
+  TextSamples(std::string path, const std::vector<std::string>& columns, bool is_nodata_told);
   TextSamples(const TextSamples&) = delete;
   TextSamples& operator=(const TextSamples&) = delete;
   ~TextSamples();
@@ -37,7 +41,8 @@ class TextSamples {
     std::array<double, 3> point{};
     std::string misfit;  ///< Empty where `point` holds.
   };
-  /// Reads the next such line into `line`; false at the end.
+  /// Reads the next such line into `line`, but for those that comments say have no height; false at the
+  /// end.
   /// @throws Error invalid_argument  the first line names no column for x, y or z, or has too few
   ///                                 fields; a line is longer than 64 KiB, or its quotes do not end
   ///               io_error          the file cannot be read on
@@ -71,6 +76,8 @@ class TextSamples {
   std::size_t field_count_ = 0;
   bool may_go_on_ = false;             ///< The last column has a name, and is no coordinate.
   std::vector<std::string> comments_;  ///< Before the first line of fields.
+  bool is_nodata_told_;
+  DeclaredComments declared_;
   std::vector<std::string> fields_;
 };
 

@@ -117,7 +117,7 @@ void Verifier::fault(ToleranceCheck* check, std::string what) {
 std::string Verifier::place_text(double x, double y) const {
   const MapPoint p = facts_.map.to_map(x, y);
   char text[96];
-  std::snprintf(text, sizeof text, "(%.10g, %.10g)", p.x, p.y);
+  std::snprintf(text, sizeof text, "(%.15g, %.15g)", p.x, p.y);
   return text;
 }
 

@@ -22,7 +22,7 @@ void require_resolvable(const AffineMap& map, std::int64_t columns, std::int64_t
   }
   char text[200];
   std::snprintf(text, sizeof text,
-                "steps of %g and %g are too fine for coordinates such as %.10g %.10g, which are "
+                "steps of %g and %g are too fine for coordinates such as %.15g %.15g, which are "
                 "kept as doubles",
                 map.step_x, map.step_y, high.x, high.y);
   throw Error(ErrorCode::invalid_argument, text + ("; " + remedy), context);

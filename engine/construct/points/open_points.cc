@@ -21,7 +21,9 @@ constexpr std::size_t kBatchPoints = 4096;
 /// Text, in batches.
 class TextPoints final : public PointStream {
  public:
-  TextPoints(const std::string& path, const PointChoice& choice, const PointPart& part)
+  /// @param nodata  Takes the place of the value that comments say means no height.
+  TextPoints(const std::string& path, const PointChoice& choice, std::optional<double> nodata,
+             const PointPart& part)
       : path_(path),
         is_whole_(part.is_whole()),
         reader_(path, choice.columns, part, choice.skip_invalid) {
@@ -35,6 +37,8 @@ class TextPoints final : public PointStream {
     if (facts_.units.plane == "degree") {
       facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
     }
+    take_comments(nodata.has_value());
+    reader_.declared().tell(path, warnings_);
     note_unknown_units(path);
   }
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
@@ -42,12 +46,17 @@ class TextPoints final : public PointStream {
     batch.clear();
     SourcePoint point;
     while (batch.size() < kBatchPoints && reader_.next(point)) {
-      batch.push_back(point);
+      if (nodata_ && to_double(point.z) == *nodata_) {
+        ++left_out_;
+      } else {
+        batch.push_back(point);
+      }
     }
     return !batch.empty();
   }
   [[nodiscard]] LeftOutPoints left_out() const noexcept override {
     LeftOutPoints points;
+    points.add(LeftOutReason::kNodata, left_out_);
     points.add(LeftOutReason::kInvalid, reader_.skipped().rows);
     return points;
   }
@@ -71,6 +80,16 @@ class TextPoints final : public PointStream {
  private:
   std::string path_;
   bool is_whole_;
+  /// Takes what comments declare; the names of columns go before them.
+  void take_comments(bool is_nodata_told) {
+    const DeclaredComments& declared = reader_.declared();
+    facts_.crs = declared.crs();
+    facts_.vertical_crs = declared.vertical_crs();
+    const DeclaredUnits units = declared.units();
+    facts_.units.plane = facts_.units.plane.empty() ? units.plane : facts_.units.plane;
+    facts_.units.heights = facts_.units.heights.empty() ? units.heights : facts_.units.heights;
+    nodata_ = is_nodata_told ? std::nullopt : declared.nodata();
+  }
   /// Warns of what names of columns say in brackets and nobody understands.
   void note_unknown_units(const std::string& path) {
     const std::string remark = reader_.unknown_unit();
@@ -86,7 +105,8 @@ class TextPoints final : public PointStream {
   XyzReader reader_;
   PointStreamFacts facts_;
   SourceWarnings warnings_;
-  std::uint64_t total_ = 0;
+  std::optional<double> nodata_;  ///< The one that comments declare.
+  std::uint64_t total_ = 0, left_out_ = 0;
 };
 
 /// @throws Error invalid_argument  a choice means nothing for the format of the file
@@ -130,7 +150,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
     case PointFormat::kLas:
       return std::make_unique<LasReader>(path, choice, part);
     case PointFormat::kText:
-      return std::make_unique<TextPoints>(path, choice, part);
+      return std::make_unique<TextPoints>(path, choice, nodata, part);
     case PointFormat::kLayer:
       break;
   }

@@ -16,8 +16,9 @@ namespace ptin {
 /// vertices (tin/tin_vertices.h), text (read/xyz_reader.h), anything else as a layer of OGR's
 /// (read/ogr_points.h).
 /// @param nodata     The height that means none. Of a TIN, only vertices are handed out that belong
-///                   to a triangle with three heights, as when the TIN itself is built. Of other
-///                   files, points with this height are handed out all the same.
+///                   to a triangle with three heights, as when the TIN itself is built. Of text it
+///                   takes the place of a value that a comment declares. Points with this height are
+///                   handed out all the same.
 /// @param resources  For a TIN, while it is opened.
 /// @param part       What is read of the file. A TIN, a layer and text that is_packed() are read as a
 ///                   whole.

@@ -166,7 +166,8 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.source = stream->facts();
   SourceWarnings of_crs;
   const bool is_layer = point_format_of(path, options_.points) == PointFormat::kLayer;
-  if (!is_layer || result.source.crs.empty()) {  // OGR looks at a .prj where one belongs to it
+  // OGR looks at a .prj where one belongs to a layer; that it is another CRS is told once a file.
+  if (result.source.crs.empty() || (!is_layer && portion.part.begin == 0)) {
     take_crs_beside(path, result.source.crs, of_crs);
   }
   SpoolWriter writer(files_.files, files_.path("spool", number), number);

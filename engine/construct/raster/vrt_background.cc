@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include <cpl_conv.h>
 #include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <gdal_priv.h>
@@ -14,6 +15,8 @@ namespace {
 
 /// VRTs in VRTs are looked through to this depth: one may name itself.
 constexpr int kDeepest = 8;
+
+constexpr const char* kNan = "nan";
 
 struct FreeXml {
   void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
@@ -57,35 +60,43 @@ std::string text_of(CPLXMLNode* root) {
 
 std::string with_background(GDALDataset& data, const std::string& background, int depth);
 
-/// Lets a source that is a VRT itself not cover what none of its own sources covers.
-void look_through(CPLXMLNode* source, const std::string& folder, const std::string& background,
+/// Writes out names that are relative to the folder of a VRT: its XML has none by itself.
+void make_absolute(CPLXMLNode* parent, const std::string& folder) {
+  for (CPLXMLNode* child : elements_in(parent)) {
+    make_absolute(child, folder);
+    if (EQUAL(CPLGetXMLValue(child, "relativeToVRT", "0"), "1")) {
+      const std::string path =
+          CPLProjectRelativeFilename(folder.c_str(), CPLGetXMLValue(child, nullptr, ""));
+      CPLSetXMLValue(child, nullptr, path.c_str());
+      CPLSetXMLValue(child, "#relativeToVRT", "0");
+    }
+  }
+}
+
+/// Puts a VRT with a background in the place of one that is named in an element. False where it names
+/// none.
+bool look_through(CPLXMLNode* parent, const char* element, const std::string& background,
                   int depth) {
-  CPLXMLNode* const named = CPLGetXMLNode(source, "SourceFilename");
-  const std::string name = CPLGetXMLValue(source, "SourceFilename", "");
-  const bool may_be_vrt =
-      name.starts_with("<VRTDataset") || EQUAL(CPLGetExtension(name.c_str()), "vrt");
-  if (named == nullptr || !may_be_vrt ||
-      STARTS_WITH_CI(CPLGetXMLValue(source, "SourceBand", "1"), "mask")) {
-    return;
+  const std::string name = CPLGetXMLValue(parent, element, "");
+  if (!name.starts_with("<VRTDataset") && !EQUAL(CPLGetExtension(name.c_str()), "vrt")) {
+    return false;
   }
-  const bool is_relative = EQUAL(CPLGetXMLValue(named, "relativeToVRT", "0"), "1");
-  const std::string path =
-      is_relative ? CPLProjectRelativeFilename(folder.c_str(), name.c_str()) : name;
   const GDALDatasetUniquePtr inner(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
-  if (inner == nullptr || !is_vrt(*inner)) {
+      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+  const std::string text =
+      inner != nullptr && is_vrt(*inner) ? with_background(*inner, background, depth + 1) : "";
+  if (!text.empty()) {
+    CPLSetXMLValue(parent, element, text.c_str());
+  }
+  return !text.empty();
+}
+
+/// Lets a source that is a VRT itself not cover what none of its own sources covers.
+void look_through_source(CPLXMLNode* source, const std::string& background, int depth) {
+  if (STARTS_WITH_CI(CPLGetXMLValue(source, "SourceBand", "1"), "mask") ||
+      !look_through(source, "SourceFilename", background, depth)) {
     return;
   }
-  const std::string text = with_background(*inner, background, depth + 1);
-  if (text.empty()) {
-    return;
-  }
-  CPLSetXMLValue(source, "SourceFilename", text.c_str());
-  CPLSetXMLValue(source, "SourceFilename.#relativeToVRT", "0");
-  CPLXMLNode* const options = CPLCreateXMLNode(source, CXT_Element, "OpenOptions");
-  CPLXMLNode* const option =
-      CPLCreateXMLElementAndValue(options, "OOI", folder_of_vrt(*inner).c_str());
-  CPLAddXMLAttributeAndValue(option, "key", "ROOT_PATH");
   if (EQUAL(source->pszValue, "SimpleSource")) {
     CPLFree(source->pszValue);
     source->pszValue = CPLStrdup("ComplexSource");
@@ -134,10 +145,16 @@ std::string with_background(GDALDataset& data, const std::string& background, in
   if (root == nullptr) {
     return {};
   }
+  make_absolute(root, folder_of_vrt(data));
   const std::string kind = CPLGetXMLValue(root, "subClass", "");
   bool has_changed = false;
   if (kind == "VRTWarpedDataset") {
     has_changed = depth == 0 && add_alpha(root);
+    CPLXMLNode* const options = CPLGetXMLNode(root, "GDALWarpOptions");
+    // A warp carries NaN on; a number would be one of its values.
+    if (options != nullptr && background == kNan) {
+      has_changed = look_through(options, "SourceDataset", background, depth) || has_changed;
+    }
   }
   for (CPLXMLNode* band : elements_in(root)) {
     if (!kind.empty() || !EQUAL(band->pszValue, "VRTRasterBand") || !has_sources(band) ||
@@ -145,7 +162,7 @@ std::string with_background(GDALDataset& data, const std::string& background, in
       continue;
     }
     for (CPLXMLNode* source : elements_in(band)) {
-      look_through(source, folder_of_vrt(data), background, depth);
+      look_through_source(source, background, depth);
     }
     set_element(band, "NoDataValue", background);
     has_changed = true;
@@ -163,11 +180,9 @@ std::unique_ptr<GDALDataset, CloseDataset> open_with_background(GDALDataset& dat
   if (text.empty()) {
     return nullptr;
   }
-  CPLStringList options;
-  options.SetNameValue("ROOT_PATH", folder_of_vrt(data).c_str());
   static constexpr const char* kDrivers[] = {"VRT", nullptr};
   return std::unique_ptr<GDALDataset, CloseDataset>(
-      GDALDataset::Open(text.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers, options.List()));
+      GDALDataset::Open(text.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers));
 }
 
 }  // namespace ptin

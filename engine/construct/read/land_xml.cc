@@ -153,7 +153,9 @@ void LandXmlElements::begin(std::string_view name, const char** attributes) {
     refuse_here("elements lie more than 64 deep");
   }
   if (depth_ == 1 && name != "LandXML") {
-    refuse_here("the first element is '" + std::string(name.substr(0, 40)) + "', not LandXML");
+    refuse_here("the first element is '" + std::string(name.substr(0, 40)) +
+                "', not LandXML; a raster that XML describes is named as GDAL does, by its driver, "
+                "as PDS4:FILE.xml:1:1, or given a name that does not end in .xml");
   }
   if (depth_ == 2 && name == "CoordinateSystem") {
     read_crs(attributes);

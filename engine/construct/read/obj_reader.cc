@@ -2,9 +2,9 @@
 //
 // Wavefront OBJ: `v x y z` and `f a b c`, also of four corners (a/t/n too; negative indices count
 // from the last vertex), z up. All objects and groups are one TIN. A line that ends in a backslash
-// goes on in the next one. Comments (#, to the end of the line), lines, points, normals, textures,
-// materials and what follows the coordinates of a vertex are passed over; comments before the first
-// vertex may name the CRS, as in `# crs: EPSG:25832`.
+// goes on in the next one. A weight behind x, y and z divides them. Comments (#, to the end of the
+// line), lines, points, normals, textures, materials and colours of vertices are passed over; comments
+// before the first vertex may name the CRS, as in `# crs: EPSG:25832` (read/declared_comments.h).
 #include <algorithm>
 #include <array>
 #include <string>
@@ -82,13 +82,31 @@ class ObjReader {
     return line.ends_with('\\') && line.find('#') == std::string_view::npos;
   }
 
+  /// x, y, z, and a weight by which they are divided, where nothing else follows: three or four numbers
+  /// more are a colour.
+  void add_vertex() {
+    SourcePoint p{coordinate_of(words_[1], place_), coordinate_of(words_[2], place_),
+                  coordinate_of(words_[3], place_)};
+    if (words_.size() == 5) {
+      const double weight = to_double(coordinate_of(words_[4], place_));
+      if (weight == 0.0) {
+        refuse("a vertex has the weight 0, and so lies nowhere; leave it out", place_);
+      }
+      if (weight != 1.0) {
+        for (Decimal* d : {&p.x, &p.y, &p.z}) {
+          *d = coordinate_of(to_double(*d) / weight, place_);
+        }
+      }
+    }
+    tin_.add_vertex(p);
+  }
+
   void read_words() {
     if (words_[0] == "v") {
       if (words_.size() < 4) {
         refuse("a vertex needs x, y and z", place_);
       }
-      tin_.add_vertex({coordinate_of(words_[1], place_), coordinate_of(words_[2], place_),
-                       coordinate_of(words_[3], place_)});
+      add_vertex();
     } else if (words_[0] == "f") {
       ids_.clear();
       for (std::size_t i = 1; i < words_.size(); ++i) {

@@ -97,8 +97,8 @@ void OgrPoints::Layer::choose_height(const std::string& path, const std::string&
     if (wkbFlatten(type) != wkbUnknown && !wkbHasZ(type)) {
       refuse("the points of layer '" + std::string(layer->GetName()) +
              (numbers_in(*layer).empty()
-                  ? "' have no z, and no attribute holds numbers; give points with z, or a text "
-                    "with x, y and z in each line (.xyz, .csv)"
+                  ? "' have no z, and no attribute holds numbers that --z-field could name; give "
+                    "points with z, or a text with x, y and z in each line (.xyz, .csv)"
                   : "' have no z; name the attribute that holds their height with --z-field"));
     }
     return;

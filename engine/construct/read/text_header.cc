@@ -147,6 +147,11 @@ std::size_t comment_mark(std::string_view line) {
   return std::min(line.find_first_not_of('/'), line.size());
 }
 
+bool tells_separator(std::string_view line) {
+  constexpr std::string_view kKey = "sep=";
+  return line.size() <= kKey.size() + 1 && equal_in_any_case(line.substr(0, kKey.size()), kKey);
+}
+
 void join_units(std::vector<std::string>& names) {
   std::vector<std::string> joined;
   for (std::string& name : names) {

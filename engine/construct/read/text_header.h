@@ -39,6 +39,9 @@ inline constexpr std::string_view kBlanks = " \t\r\n\f\v\x1a";
 /// @param line  Without blanks before it.
 [[nodiscard]] std::size_t comment_mark(std::string_view line);
 
+/// True for the line by which Excel is told the separator: "sep=;". The lines below tell it, too.
+[[nodiscard]] bool tells_separator(std::string_view line);
+
 /// Joins a unit in brackets to the name before it, where a blank between them made it a field of its
 /// own: "z", "(m)".
 void join_units(std::vector<std::string>& names);

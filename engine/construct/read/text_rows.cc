@@ -100,7 +100,7 @@ void TextRows::begin() {
   if (!given_.empty()) {
     if (given_.size() > count) {
       table_.refuse("--columns names " + std::to_string(given_.size()) +
-                    " columns, and the first line has " + std::to_string(count));
+                    " columns, and the first line has " + std::to_string(count) + hint_of_bars());
     }
     let_last_go_on(given_.size());
     return;
@@ -117,12 +117,12 @@ void TextRows::begin() {
           name_of(roles_[i]) +
           "; columns are named x, y, z or easting, northing, height or lon, lat, elevation" +
           (roles_[i].end == 0 ? "" : ", with 1 and 2 behind them for the two ends") +
-          ", or by --columns");
+          ", or by --columns" + hint_of_bars());
     }
   }
   if (count < roles_.size()) {
     table_.refuse("there are " + std::to_string(count) + " fields in the first line, where " +
-                  listed(roles_) + " are expected");
+                  listed(roles_) + " are expected" + hint_of_bars());
   }
   if (!header.empty()) {
     refuse_twins(header);
@@ -130,6 +130,19 @@ void TextRows::begin() {
   }
   numbering_.is_guess = header.empty() && count > roles_.size();
   numbering_.may_be = numbering_.is_guess || (header.empty() && count >= kFewestNumbered);
+}
+
+/// What to do where bars divide the first line, which separate nothing; "" where they do not.
+std::string TextRows::hint_of_bars() const {
+  std::ptrdiff_t bars = 0;
+  for (const std::string& name : table_.header()) {
+    bars += std::count(name.begin(), name.end(), '|');
+  }
+  for (const std::string_view field : table_.fields()) {
+    bars += std::count(field.begin(), field.end(), '|');
+  }
+  return bars < 2 ? ""
+                  : "; '|' is no separator: write semicolons, commas, tabs or blanks in its place";
 }
 
 /// Refuses a header in which another column has the name of one that is used.

@@ -78,6 +78,7 @@ class TextRows {
  private:
   void begin();
   void note_numbering();
+  [[nodiscard]] std::string hint_of_bars() const;
   void refuse_twins(const std::vector<std::string>& header) const;
   void let_last_go_on(std::size_t named);
   /// The names of the columns: given, of the header, or none.

@@ -351,7 +351,7 @@ bool TextTable::next_row() {
     const std::size_t mark = is_first ? bytes_of_byte_order_mark(row_) : 0;
     row_.remove_prefix(mark);
     const std::string_view text = trimmed(row_);
-    if (text.empty()) {
+    if (text.empty() || (!begun_ && tells_separator(text))) {
       continue;
     }
     if (comment_mark(text) > 0) {
@@ -372,6 +372,7 @@ bool TextTable::next_row() {
 
 /// Keeps a comment that stands before the first row.
 void TextTable::note_comment(std::string_view text) {
+  declared_.note(text.substr(comment_mark(text)));
   if (comments_.size() == kMostComments) {
     comments_.erase(comments_.begin());
   }
@@ -438,11 +439,22 @@ std::string TextTable::misfit() const {
   if (!is_misfit()) {
     return {};
   }
-  return "there are " + std::to_string(fields_.size()) + " fields where the first line has " +
-         std::to_string(field_count_) +
-         (separator_ == ',' && fields_.size() > field_count_
-              ? "; numbers have a decimal point, no comma"
-              : "");
+  const std::string counts = "there are " + std::to_string(fields_.size()) +
+                             " fields where the first line has " + std::to_string(field_count_);
+  if (separator_ == ' ') {
+    return counts + ", which blanks separate; separate the fields of all lines alike";
+  }
+  if (fields_.size() == 1) {
+    const char* const marks = separator_ == '\t'  ? "tabs"
+                              : separator_ == ';' ? "semicolons"
+                                                  : "commas";
+    return counts + ": " + marks +
+           " separate the fields of the first line, so those of all, and this line has none; "
+           "separate the fields of all lines alike";
+  }
+  return counts + (separator_ == ',' && fields_.size() > field_count_
+                       ? "; numbers have a decimal point, no comma"
+                       : "");
 }
 
 std::string shown_field(std::string_view field) {
@@ -456,7 +468,7 @@ std::string shown_field(std::string_view field) {
 std::string why_no_number(std::string_view field) {
   Decimal ignored;
   if (field.empty()) {
-    return "is empty";
+    return "is empty; give it a number, or leave the line out";
   }
   std::string with_point(field);
   if (const std::size_t comma = with_point.find(','); comma != std::string::npos) {

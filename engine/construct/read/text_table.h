@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/construct/read/declared_comments.h"
 #include "engine/construct/read/point_part.h"
 #include "engine/error.h"
 
@@ -25,8 +26,8 @@ class QuotesInPart : public Error {
 };
 
 /// Reads rows of fields from text. Lines end in LF, CR LF or a CR alone; empty lines and comments
-/// (lines that begin with '#', '%', '!', '>' or "//") are passed over, and so is a byte order mark of
-/// UTF-8. The first other line decides
+/// (lines that begin with '#', '%', '!', '>' or "//") are passed over, and so are a byte order mark of
+/// UTF-8 and Excel's first line "sep=;". The first other line decides
 ///   - the separator: semicolons where it has any, else commas, else tabs, unless two numbers stand
 ///     between them, else spaces; spaces in any number count as one, and where they separate so do
 ///     tabs;
@@ -60,6 +61,9 @@ class TextTable {
   [[nodiscard]] const std::vector<std::string>& header();
   /// True where the header is a comment.
   [[nodiscard]] bool is_told_by_comment() const noexcept { return is_told_by_comment_; }
+
+  /// What comments before the first row declare; all of it is known when the header is.
+  [[nodiscard]] const DeclaredComments& declared() const noexcept { return declared_; }
 
   /// From here on a row may have more fields than the first one: what follows the last column goes
   /// on in it, as a comma in a description does, where that column begins with no number.
@@ -137,6 +141,7 @@ class TextTable {
   std::size_t field_count_ = 0;
   std::vector<std::string> header_;
   std::vector<std::string> comments_;  ///< Before the first row, until it was read.
+  DeclaredComments declared_;
   bool is_told_by_comment_ = false;
   bool may_last_go_on_ = false, may_misfit_ = false;
   std::vector<std::string_view> fields_;

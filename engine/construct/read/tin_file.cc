@@ -5,13 +5,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <unordered_map>
+#include <cstdio>
 #include <utility>
 
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/read/column_names.h"
+#include "engine/construct/read/crs_beside.h"
 #include "engine/construct/read/tin_reader.h"
-#include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
@@ -62,7 +61,9 @@ TinReader& tin_reader_of(const std::string& path) {
 TinFileFacts read_tin_file(const std::string& path, const TinReading& reading, TinFileSink& sink) {
   TinReader& read = tin_reader_of(path);
   ByteReader in(path);
-  return read(in, reading, sink);
+  TinFileFacts facts = read(in, reading, sink);
+  take_crs_beside(path, facts.crs, facts.warnings);
+  return facts;
 }
 
 void split_words(std::string_view line, std::vector<std::string_view>& words) {
@@ -143,51 +144,25 @@ void TinReceiver::add_face(std::span<const std::int64_t> ids, const std::string&
   sink_.add_face(ids);
 }
 
-bool TinReceiver::follow_comment(std::string_view comment) {
-  split_words(comment, words_);
-  if (words_.size() < 2 || (!words_[0].ends_with(':') && !words_[0].ends_with('='))) {
-    return false;
+/// What comments declare, which files with declarations of their own (LandXML) do not read.
+void TinReceiver::take_comments() {
+  if (!comments_.crs().empty()) {
+    facts_.crs = comments_.crs();
   }
-  const std::string_view key = words_[0].substr(0, words_[0].size() - 1);
-  const std::string value(
-      comment.substr(static_cast<std::size_t>(words_[1].data() - comment.data())));
-  if (equal_in_any_case(key, "crs") || equal_in_any_case(key, "srs")) {
-    facts_.crs = value;
-  } else if (equal_in_any_case(key, "epsg")) {
-    facts_.crs = "EPSG:" + value;
-  } else if (equal_in_any_case(key, "vertical_crs")) {
-    facts_.vertical_crs = value;
-  } else if (equal_in_any_case(key, "units") || equal_in_any_case(key, "unit")) {
-    const std::string unit = height_unit_named(value);
-    facts_.units = {unit, facts_.units.heights.empty() ? unit : facts_.units.heights};
-  } else if (equal_in_any_case(key, "height_units") || equal_in_any_case(key, "height_unit")) {
-    facts_.units.heights = height_unit_named(value);
-  } else {
-    return false;
+  if (!comments_.vertical_crs().empty()) {
+    facts_.vertical_crs = comments_.vertical_crs();
   }
-  return true;
-}
-
-void TinReceiver::note_comment(std::string_view comment) {
-  if (follow_comment(comment)) {
-    return;
+  if (const DeclaredUnits units = comments_.units(); units != DeclaredUnits{}) {
+    facts_.units = units;
   }
-  constexpr std::array<std::string_view, 9> kTelling = {
-      "shift", "offset", "origin", "translation", "scale", "crs", "srs", "epsg", "projection"};
-  std::string small(comment.substr(0, 200));
-  std::transform(small.begin(), small.end(), small.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  const bool has_digit = small.find_first_of("0123456789") != std::string::npos;
-  for (const std::string_view word : kTelling) {
-    if (has_digit && small.find(word) != std::string::npos) {
-      warn({.kind = "comment_not_followed",
-            .message = "a comment tells of coordinates what is not followed, '" +
-                       std::string(comment.substr(0, 80)) +
-                       "'; bring the coordinates to their CRS first, and name that with --a-srs",
-            .file = in_.path()});
-      return;
-    }
+  comments_.tell(in_.path(), facts_.warnings);
+  if (const auto nodata = comments_.nodata()) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%.15g", *nodata);
+    warn({.kind = "nodata_in_comment",
+          .message = std::string("a comment says that the height ") + value +
+                     " means none, which is not followed; build with --nodata " + value,
+          .file = in_.path()});
   }
 }
 
@@ -210,6 +185,7 @@ TinFileFacts TinReceiver::finish() {
                : "there is no triangle in this file; points alone are built from CSV, XYZ or LAS",
            in_.path());
   }
+  take_comments();
   return std::move(facts_);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/declared_comments.h"
 #include "engine/construct/read/tin_file.h"
 
 namespace ptin {
@@ -64,22 +65,21 @@ class TinReceiver {
   void warn(SourceWarning warning) { facts_.warnings.add(std::move(warning)); }
   void set_units(DeclaredUnits units) { facts_.units = std::move(units); }
   [[nodiscard]] std::uint64_t vertices() const noexcept { return facts_.vertices; }
-  /// Takes what a comment declares, as "crs: EPSG:25832", "vertical_crs: ...", "units: m" and
-  /// "height_units: ft". Warns of one that tells of a CRS, or of a shift or scale of coordinates, in other words.
-  void note_comment(std::string_view comment);
+  /// Takes what a comment declares (read/declared_comments.h).
+  void note_comment(std::string_view comment) { comments_.note(comment); }
   /// To be called at the end of the file.
   /// @throws Error invalid_argument  there was no vertex, or no triangle
   [[nodiscard]] TinFileFacts finish();
 
  private:
   void look_around();
-  [[nodiscard]] bool follow_comment(std::string_view comment);
+  void take_comments();
 
   const ByteReader& in_;
   const TinReading& reading_;
   TinFileSink& sink_;
   TinFileFacts facts_;
-  std::vector<std::string_view> words_;
+  DeclaredComments comments_;
   std::uint64_t added_ = 0;
 };
 

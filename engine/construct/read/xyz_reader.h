@@ -47,6 +47,12 @@ class XyzReader {
     std::string fault;
   };
   [[nodiscard]] const Skipped& skipped() const noexcept { return skipped_; }
+  /// What comments declare before the first row, which this reads.
+  /// @throws Error as next()
+  [[nodiscard]] const DeclaredComments& declared() {
+    static_cast<void>(table_.header());
+    return table_.declared();
+  }
 
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }

@@ -20,7 +20,7 @@ class FaultReport {
     }
     const MapPoint at = map_.to_map(fault.first.x, fault.first.y);
     char place[80];
-    std::snprintf(place, sizeof place, " (%s at %.10g %.10g)", fault.count > 1 ? "first" : "it is",
+    std::snprintf(place, sizeof place, " (%s at %.15g %.15g)", fault.count > 1 ? "first" : "it is",
                   at.x, at.y);
     text_ += (text_.empty() ? "" : "; ") + std::to_string(fault.count) + " " +
              (fault.count == 1 ? one : many) + place;

@@ -25,6 +25,8 @@ struct Declaration {
 [[nodiscard]] std::vector<Declaration> las_declarations();
 [[nodiscard]] std::vector<Declaration> text_declarations();
 [[nodiscard]] std::vector<Declaration> layer_declarations();
+[[nodiscard]] std::vector<Declaration> hidden_declarations();
+[[nodiscard]] std::vector<Declaration> companion_declarations();
 [[nodiscard]] std::vector<Declaration> mesh_declarations();
 
 }  // namespace ptin::tools::testing
