@@ -47,4 +47,19 @@ std::string unit_of_dxf(const std::string& path) {
   return {};
 }
 
+bool has_geodata(const std::string& path) {
+  ByteReader in(path);
+  std::string_view code, value;
+  // A group is a line with its code and one with its value; an object begins with the code 0.
+  while (in.line(code) && in.line(value)) {
+    if (trimmed(value) == "GEODATA" && trimmed(code) == "0") {
+      return true;
+    }
+    if (code.size() > 16) {
+      return false;
+    }
+  }
+  return false;
+}
+
 }  // namespace ptin

@@ -13,4 +13,9 @@ namespace ptin {
 /// Cost: reads the header, some hundred lines.
 [[nodiscard]] std::string unit_of_dxf(const std::string& path);
 
+/// True where the objects of a DXF tell a CRS (GEODATA), which OGR does not read. False for a binary one.
+/// @throws Error not_found, io_error
+/// Cost: reads the file.
+[[nodiscard]] bool has_geodata(const std::string& path);
+
 }  // namespace ptin

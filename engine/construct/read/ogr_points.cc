@@ -126,6 +126,7 @@ OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
   }
   if (EQUAL(layer_->data->GetDriverName(), "DXF") && !path_.starts_with("/vsi")) {
     note_unit(unit_of_dxf(path_));
+    note_geodata();
   }
   if (layer_->layer->GetLayerDefn()->GetGeomFieldCount() > 1) {
     warnings_.add({.kind = "several_geometries",
@@ -204,6 +205,17 @@ void OgrPoints::note_unit(const std::string& unit) {
     return;
   }
   facts_.units = {unit, facts_.units.heights.empty() ? unit : facts_.units.heights};
+}
+
+/// Warns of the CRS that a DXF may have, and OGR passes over.
+void OgrPoints::note_geodata() {
+  if (has_geodata(path_)) {
+    warnings_.add({.kind = "dxf_geodata",
+                   .message =
+                       "the drawing tells its CRS (GEODATA), which is not read; name it with "
+                       "--a-srs, or lay a .prj beside the file",
+                   .file = path_});
+  }
 }
 
 /// Warns of a feature whose z is no height of its own.

@@ -48,6 +48,7 @@ class OgrPoints final : public PointStream {
   void add_point(const void* point, double field_height, std::vector<SourcePoint>& batch);
   void note_altitude_mode(const void* feature);
   void note_unit(const std::string& unit);
+  void note_geodata();
   [[nodiscard]] Decimal number(double value, const char* role) const;
 
   std::string path_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What layers declare of features that are no part of the ground.
+// What drawings declare: features that are no part of the ground, a CRS that is not read.
 #include "tests/tools/declarations/declaration.h"
 
 namespace ptin::tools::testing {
@@ -41,6 +41,15 @@ std::vector<Declaration> hidden_declarations() {
       hidden_in_dxf("layer.dxf_frozen", "FROZEN"),
       hidden_in_dxf("layer.dxf_off", "OFF"),
       hidden_in_dxf("layer.dxf_invisible", "0", "60\n1\n"),
+      {"layer.dxf_geodata",
+       [](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
+         write_file(folder.file("source.dxf"),
+                    "0\nSECTION\n2\nENTITIES\n" + dxf_point("0", "0", "7") +
+                        dxf_point("9", "0", "7") + dxf_point("9", "9", "7") +
+                        "0\nENDSEC\n0\nSECTION\n2\nOBJECTS\n0\n" +
+                        (is_declared ? "GEODATA" : "DICTIONARY") + "\n5\nA1\n0\nENDSEC\n0\nEOF\n");
+         return {folder.file("source.dxf")};
+       }},
       {"layer.kml_visibility",
        [](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
          std::string text =
