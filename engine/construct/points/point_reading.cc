@@ -275,17 +275,6 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
   }
 }
 
-/// The warnings but for those of a CRS in whose place the caller puts another one.
-SourceWarnings that_count(const SourceWarnings& all, const SourceOptions& options) {
-  SourceWarnings some;
-  for (const SourceWarning& w : all.all()) {
-    if (options.a_srs.empty() || !w.kind.starts_with("crs_")) {
-      some.add(w);
-    }
-  }
-  return some;
-}
-
 /// Every step-th of the samples of a portion; their weight grows by as much.
 void add_samples(const PortionRead& read, std::size_t step, PointReading& reading) {
   for (std::size_t i = 0; i < read.samples.size(); i += step) {
@@ -319,7 +308,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     reading.scan.add(read.extent);
     seen += read.seen;
     reading.left_out += read.left_out;
-    reading.warnings.join(that_count(read.warnings, options));
+    reading.warnings.join(warnings_that_count(read.warnings, options));
     reading.largest_shift = std::max(reading.largest_shift, read.largest_shift);
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points});

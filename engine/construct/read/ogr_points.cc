@@ -9,12 +9,14 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/column_names.h"
 #include "engine/construct/read/dxf_units.h"
 #include "engine/construct/read/layer_choice.h"
+#include "engine/construct/read/layer_depths.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -46,12 +48,16 @@ struct OgrPoints::Layer {
   int z_field = -1;
   int altitude_mode = -1;  ///< The attribute in which KML tells what its heights are above.
 
+  std::string crs;
+  SourceWarnings warnings;
+
   void open(const std::string& path, const PointChoice& choice);
   void choose_height(const std::string& path, const std::string& field);
 };
 
 void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) {
   const GdalSession session;
+  const ReportedVerticalParts vertical;
   data.reset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (data == nullptr) {
@@ -63,6 +69,7 @@ void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice) 
                 session.explain("this is no vector data that OGR reads"), path);
   }
   layer = &choose_layer(*data, {LayerKind::kPoints, choice.layer}, path);
+  crs = declared_crs(*data, layer->GetSpatialRef(), session, path, warnings);
   choose_height(path, choice.z_field);
   if (z_field < 0 && EQUAL(data->GetDriverName(), "LIBKML")) {
     altitude_mode = layer->GetLayerDefn()->GetFieldIndex("altitudeMode");
@@ -103,7 +110,9 @@ OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
     : path_(std::move(path)), layer_(std::make_unique<Layer>()) {
   layer_->open(path_, choice);
   const GdalSession session;
-  facts_.crs = crs_of(*layer_->layer);
+  warnings_ = layer_->warnings;
+  refuse_depths(*layer_->data, *layer_->layer, choice.z_field, path_, warnings_);
+  facts_.crs = layer_->crs;
   facts_.units.heights = unit_of_column(choice.z_field);
   if (facts_.units.heights == "degree") {
     facts_.units.heights.clear();

@@ -25,5 +25,7 @@ struct Declaration {
 [[nodiscard]] std::vector<Declaration> text_declarations();
 [[nodiscard]] std::vector<Declaration> layer_declarations();
 [[nodiscard]] std::vector<Declaration> mesh_declarations();
+[[nodiscard]] std::vector<Declaration> crs_declarations();    ///< Of all kinds of sources.
+[[nodiscard]] std::vector<Declaration> depth_declarations();  ///< Likewise.
 
 }  // namespace ptin::tools::testing

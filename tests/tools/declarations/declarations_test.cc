@@ -47,7 +47,8 @@ std::vector<Declaration> all_declarations() {
   std::vector<Declaration> all;
   for (auto list :
        {testing::raster_declarations(), testing::las_declarations(), testing::text_declarations(),
-        testing::layer_declarations(), testing::mesh_declarations()}) {
+        testing::layer_declarations(), testing::mesh_declarations(), testing::crs_declarations(),
+        testing::depth_declarations()}) {
     all.insert(all.end(), list.begin(), list.end());
   }
   return all;
