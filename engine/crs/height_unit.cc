@@ -61,6 +61,9 @@ std::optional<double> metres_in(std::string_view unit) noexcept {
 
 std::string unit_called(const std::string& name, double metres) {
   constexpr double kAlike = 1e-9;  // the two feet differ by 2e-6
+  if (name == "unknown" && metres == 1.0) {
+    return name;  // a length of 1 stands for none
+  }
   const auto known = std::find_if(kUnits.begin(), kUnits.end(), [&](const Unit& unit) {
     return std::abs(metres - unit.metres) <= kAlike * unit.metres;
   });

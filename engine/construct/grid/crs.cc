@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/grid/crs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
@@ -159,15 +161,20 @@ class OwnCrs {
     if (is_vertical_crs(declared_.crs)) {
       declared_.vertical_crs = std::exchange(declared_.crs, "");
     }
+    warn_of_shift(declared_.crs, file_, warnings_);
+    warn_of_shift(declared_.vertical_crs, file_, warnings_);
     drop_unknown(declared_.crs, "CRS", "name it by --a-srs");
+    drop_nameless();
     drop_unknown(declared_.vertical_crs, "vertical CRS", "name it by --vertical-crs");
   }
 
   /// @param vertical_crs  What the caller puts in the place of the vertical part; "" for nothing.
   [[nodiscard]] Crs resolve(const std::string& vertical_crs) {
     if (!vertical_crs.empty() || declared_.vertical_crs.empty() || !declared_.crs.empty()) {
-      return resolve_crs(declared_.crs, "",
-                         vertical_crs.empty() ? declared_.vertical_crs : vertical_crs);
+      Crs crs = resolve_crs(declared_.crs, "",
+                            vertical_crs.empty() ? declared_.vertical_crs : vertical_crs);
+      warn_of_unit(crs);
+      return with_unit(std::move(crs));
     }
     // A compound CRS tells what a vertical one is: any other part in plan does.
     const Crs with_any_plane = resolve_crs("EPSG:32631", "", declared_.vertical_crs);
@@ -177,11 +184,17 @@ class OwnCrs {
              "name both by --a-srs and --vertical-crs");
     Crs crs;
     crs.vertical_unit = with_any_plane.vertical_unit;
-    return crs;
+    return with_unit(std::move(crs));
   }
 
  private:
-  static std::string quoted(const std::string& text) { return "'" + text.substr(0, 80) + "'"; }
+  /// The beginning of a text, on one line.
+  static std::string quoted(const std::string& text) {
+    std::string line = text.substr(0, 80);
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+    return "'" + line.substr(0, line.find_last_not_of(' ') + 1) + "'";
+  }
   void warn(const char* kind, std::string message) {
     warnings_.add({kind, std::move(message), file_});
   }
@@ -197,7 +210,39 @@ class OwnCrs {
     }
   }
 
+  /// Programs write a local CRS without a name for one that they do not know.
+  void drop_nameless() {
+    const GdalSession session;
+    OGRSpatialReference srs;
+    if (declared_.crs.empty() || !read(declared_.crs, srs) || srs.IsLocal() == 0 ||
+        !is_no_name(or_unknown(srs.GetName()))) {
+      return;
+    }
+    const char* name = nullptr;
+    const double metres = srs.GetLinearUnits(&name);
+    plane_unit_ = unit_called(name == nullptr ? "" : name, metres);
+    warn("crs_nameless",
+         "its CRS has no name and is no place on Earth, as where a code or a projection is not "
+         "known; the terrain is without it, but for its unit, '" +
+             plane_unit_ + "'; name the CRS by --a-srs");
+    declared_.crs.clear();
+  }
+  void warn_of_unit(const Crs& crs) {
+    if (!crs.wkt.empty() && crs.horizontal_unit == "unknown") {
+      warn("crs_unit",
+           "its CRS does not tell the unit of its coordinates, which is not known then; name the "
+           "CRS by --a-srs");
+    }
+  }
+  [[nodiscard]] Crs with_unit(Crs crs) const {
+    if (crs.wkt.empty()) {
+      crs.horizontal_unit = plane_unit_;
+    }
+    return crs;
+  }
+
   DeclaredTexts declared_;
+  std::string plane_unit_ = "unknown";  ///< Of a CRS that was dropped.
   const std::string& file_;
   SourceWarnings& warnings_;
 };
@@ -236,6 +281,18 @@ Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& optio
   return crs;
 } catch (const Error& e) {
   throw Error(e.code(), e.message(), e.context().empty() ? file : e.context());
+}
+
+SourceWarnings warnings_that_count(const SourceWarnings& all, const SourceOptions& options,
+                                   std::uint64_t lines_before) {
+  SourceWarnings some;
+  for (SourceWarning w : all.all()) {
+    if (options.a_srs.empty() || !w.kind.starts_with("crs_")) {
+      w.line += w.line > 0 ? lines_before : 0;
+      some.add(std::move(w));
+    }
+  }
+  return some;
 }
 
 Crs resolve_crs(const std::string& declared, const std::string& a_srs,

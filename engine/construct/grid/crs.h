@@ -47,10 +47,19 @@ struct Crs {
 /// does not understand it, and the terrain has no CRS then. A vertical CRS without a horizontal one
 /// tells the unit of the heights, and is warned of. So is a CRS whose axes point to the west or to the
 /// south, or that counts heights downwards: coordinates and heights are taken as they are.
+/// A local CRS without a name is one that nobody knows: its unit alone is kept, and it is warned of. So
+/// are a CRS whose unit is not known, and a shift of heights, which is not applied.
 /// @param file          The path of the source, for warnings and errors.
 /// @throws Error invalid_argument  as resolve_crs(), of the options; `declared` is geocentric
 [[nodiscard]] Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,
                                      const std::string& file, SourceWarnings& warnings);
+
+/// The warnings but for those of a CRS (of kinds that begin with "crs_") in whose place the caller puts
+/// another one.
+/// @param lines_before  So many lines of the input come before the portion that they are of.
+[[nodiscard]] SourceWarnings warnings_that_count(const SourceWarnings& all,
+                                                 const SourceOptions& options,
+                                                 std::uint64_t lines_before = 0);
 
 /// True when GDAL understands a text as a CRS that a terrain may have: geographic, projected or local.
 /// Cost: as resolve_crs().

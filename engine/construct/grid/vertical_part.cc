@@ -16,11 +16,6 @@ namespace {
 
 std::string or_empty(const char* text) { return text == nullptr ? "" : text; }
 
-/// True for what stands in the place of a name that nobody gave.
-bool is_no_name(const std::string& name) {
-  return name.empty() || name == "unknown" || name == "unnamed";
-}
-
 /// The unit as EPSG writes it in names of CRSs.
 std::string short_name(const std::string& unit) {
   return unit == "US survey foot" ? "ftUS" : (unit == "foot" ? "ft" : unit);
@@ -39,6 +34,10 @@ std::string wkt_of(const OGR_SRSNode& node) {
 }
 
 }  // namespace
+
+bool is_no_name(const std::string& name) {
+  return name.empty() || name == "unknown" || name == "unnamed";
+}
 
 LengthUnit vertical_unit_of(const OGRSpatialReference& srs) {
   const char* name = nullptr;

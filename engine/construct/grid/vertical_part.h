@@ -22,6 +22,9 @@ struct LengthUnit {
 /// and nothing else. REQUIRES: `srs` is compound.
 [[nodiscard]] bool is_vertical_unnamed(const OGRSpatialReference& srs);
 
+/// True for what stands in the place of a name that nobody gave.
+[[nodiscard]] bool is_no_name(const std::string& name);
+
 /// The vertical part of a compound CRS alone: its code, or its WKT.
 /// @param unit  Where it is another one than that of the part, the text has this unit, in its name
 ///              too. REQUIRES: `srs` is compound.

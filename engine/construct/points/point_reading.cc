@@ -284,20 +284,6 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
   }
 }
 
-/// The warnings of a portion but for those of a CRS in whose place the caller puts another one.
-/// @param lines_before  So many lines of its input come before it.
-SourceWarnings that_count(const SourceWarnings& all, const SourceOptions& options,
-                          std::uint64_t lines_before) {
-  SourceWarnings some;
-  for (SourceWarning w : all.all()) {
-    if (options.a_srs.empty() || !w.kind.starts_with("crs_")) {
-      w.line += w.line > 0 ? lines_before : 0;
-      some.add(std::move(w));
-    }
-  }
-  return some;
-}
-
 /// Every step-th of the samples of a portion; their weight grows by as much.
 void add_samples(const PortionRead& read, std::size_t step, PointReading& reading) {
   for (std::size_t i = 0; i < read.samples.size(); i += step) {
@@ -330,7 +316,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     points_of[p.portion.input] += read.extent.points + read.left_out.total();
     reading.scan.add(read.extent);
     reading.left_out.join(read.left_out);
-    reading.warnings.join(that_count(read.warnings, options, lines_before));
+    reading.warnings.join(warnings_that_count(read.warnings, options, lines_before));
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points});
     }

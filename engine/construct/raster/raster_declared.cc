@@ -11,7 +11,9 @@
 #include <cpl_vsi.h>
 #include <gdal_rat.h>
 
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/raster/raster_depths.h"
 #include "engine/construct/raster/raster_header.h"
 #include "engine/construct/raster/raster_place.h"
 #include "engine/crs/height_unit.h"
@@ -72,18 +74,6 @@ void warn_of_classes(GDALRasterBand& band, const std::string& path, SourceWarnin
   }
 }
 
-/// A unit of the band that says nothing, or another one than is known, is told.
-void warn_of_unit(const RasterShape& shape, const std::string& path, SourceWarnings& warnings) {
-  if (shape.unit.empty() || metres_in(height_unit_named(shape.unit))) {
-    return;
-  }
-  warnings.add({"unknown_height_unit",
-                "the unit of the heights, '" + shape.unit +
-                    "', is none that is known, so nothing is converted; name a vertical CRS with "
-                    "--vertical-crs, or a unit such as 'metre' with 'gdal_edit.py -units'",
-                path});
-}
-
 void describe_values(GDALRasterBand& band, const std::string& path, RasterShape& shape) {
   const GDALDataType type = band.GetRasterDataType();
   shape.type_name = GDALGetDataTypeName(type);
@@ -118,15 +108,11 @@ void describe_values(GDALRasterBand& band, const std::string& path, RasterShape&
   band.GetBlockSize(&shape.block[0], &shape.block[1]);
 }
 
-/// GDAL leaves the vertical part of the CRS of a GeoTIFF 1.0 out unless it is asked for. The option is
-/// this thread's alone, and as before when the scope ends.
-using VerticalPartsOfOldFiles = CPLConfigOptionSetter;
-
 }  // namespace
 
 GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnings) {
   const GdalSession session;
-  const VerticalPartsOfOldFiles option("GTIFF_REPORT_COMPD_CS", "YES", false);
+  const ReportedVerticalParts vertical;
   static constexpr unsigned kFlags = GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR;
   GDALDatasetUniquePtr data(GDALDataset::Open(path.c_str(), kFlags));
   if (data != nullptr) {
@@ -146,7 +132,7 @@ GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnin
 
 RasterBands bands_of(GDALDataset& data, const std::string& path, bool is_overridden) {
   // Many a question has GDAL read the CRS, and keep it as it is then.
-  const VerticalPartsOfOldFiles option("GTIFF_REPORT_COMPD_CS", "YES", false);
+  const ReportedVerticalParts vertical;
   const int count = data.GetRasterCount();
   if (count == 0) {
     const std::vector<std::string> inside = subdatasets_of(data);
@@ -202,13 +188,14 @@ std::optional<double> declared_nodata(GDALRasterBand& band) {
 
 RasterShape shape_of(GDALDataset& data, GDALRasterBand& band, const std::string& path,
                      SourceWarnings& warnings) {
-  const VerticalPartsOfOldFiles option("GTIFF_REPORT_COMPD_CS", "YES", false);
+  const ReportedVerticalParts vertical;
   RasterShape shape;
   check_header(data, path, warnings);
   describe_values(band, path, shape);
   describe_place(data, path, shape, warnings);
+  shape.unit = shape.unit.empty() ? height_unit_of_prj(data) : shape.unit;
   warn_of_classes(band, path, warnings);
-  warn_of_unit(shape, path, warnings);
+  refuse_depths(band, path, warnings);
   if (const std::vector<std::string> inside = subdatasets_of(data); inside.size() > 1) {
     warnings.add({"several_rasters",
                   "this file holds " + std::to_string(inside.size()) +

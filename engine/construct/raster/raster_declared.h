@@ -25,8 +25,7 @@ struct RasterBands {
   GDALRasterBand* mask = nullptr;
 };
 
-/// Opens a raster. Vertical parts of the CRSs of old GeoTIFFs are asked for, which GDAL leaves out by
-/// itself.
+/// Opens a raster. Vertical parts of CRSs are asked for that GDAL leaves out by itself.
 /// @param warnings  Receives what GDAL warns of.
 /// @throws Error not_found, io_error; invalid_argument  not a raster
 [[nodiscard]] GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnings);

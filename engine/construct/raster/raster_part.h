@@ -31,7 +31,8 @@ struct RasterShape {
   bool georeferenced = false;      ///< false: the map is the identity, in pixels.
   bool rows_from_south = false;    ///< The file's first row is the southernmost.
   bool columns_from_east = false;  ///< The file's first column is the easternmost.
-  std::string crs;                 ///< WKT2:2019 as declared; empty when unknown.
+  std::string crs;                 ///< As declared_crs() (grid/dataset_crs.h); empty when unknown.
+  std::string plane_unit;          ///< Of x and y, beside a CRS; empty when unknown.
   std::string unit;                ///< Of heights; empty when unknown.
   RawType raw = RawType::kInt32;
   std::string type_name;  ///< GDAL's: "Int16", "Float32" ...

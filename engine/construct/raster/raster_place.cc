@@ -5,10 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
-#include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/dataset_crs.h"
+#include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/raster/raster_items.h"
+#include "engine/construct/raster/tiff_keys.h"
 #include "engine/error.h"
 #include "engine/geometry/point.h"
 
@@ -75,15 +80,6 @@ void set_map(const std::array<double, 6>& t, const std::string& path, RasterShap
   shape.map = {t[0] + t[1] * west, t[3] + t[5] * south, std::abs(t[1]), std::abs(t[5])};
 }
 
-std::string wkt_of(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  srs.exportToWkt(&text, options);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  return wkt;
-}
-
 OGRAxisOrientation orientation_of(const OGRSpatialReference& srs, int axis) {
   OGRAxisOrientation orientation = OAO_Other;
   srs.GetAxis(nullptr, axis, &orientation);
@@ -125,6 +121,45 @@ void warn_of_epoch(const OGRSpatialReference& srs, const std::string& path,
   }
 }
 
+/// `plane`, or where keys declare heights: the CRS with these.
+std::string with_heights(const DeclaredCrs& declared, const std::string& path,
+                         const std::string& plane) try {
+  const Crs crs = resolve_crs(declared.crs, "", declared.vertical_crs);
+  return crs.vertical_known ? crs.wkt : plane;
+} catch (const Error& e) {
+  throw Error(e.code(), e.message(), e.context().empty() ? path : e.context());
+}
+
+/// Looks at the keys of a GeoTIFF for what GDAL passes over: codes that it does not know, and a
+/// vertical part in words.
+void follow_keys(GDALDataset& data, const OGRSpatialReference* srs, const std::string& path,
+                 RasterShape& shape, SourceWarnings& warnings) {
+  const bool is_known = srs != nullptr && (srs->IsProjected() != 0 || srs->IsGeographic() != 0);
+  const bool is_solid = is_known && (srs->IsCompound() != 0 || srs->GetAxesCount() > 2);
+  if (is_solid || !EQUAL(data.GetDriverName(), "GTiff")) {
+    return;
+  }
+  const GeoTiffKeys keys = keys_of_tiff(path);
+  if (keys.directory.empty() || (is_known && !tell_of_heights(keys))) {
+    return;
+  }
+  const DeclaredCrs declared = crs_of_keys(keys);
+  shape.unit = shape.unit.empty() ? declared.units.heights : shape.unit;
+  if (!is_known) {
+    shape.crs = declared.crs;
+    shape.plane_unit = declared.units.plane;
+  }
+  if (!declared.crs.empty() && is_same_in_plan(shape.crs, declared.crs)) {
+    shape.crs = with_heights(declared, path, shape.crs);
+  }
+  for (SourceWarning warning : declared.warnings) {
+    if (!is_known || !declared.crs.empty()) {
+      warning.file = path;
+      warnings.add(std::move(warning));
+    }
+  }
+}
+
 }  // namespace
 
 void describe_place(GDALDataset& data, const std::string& path, RasterShape& shape,
@@ -134,6 +169,7 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   if (shape.width - 1 > kGridMax || shape.height - 1 > kGridMax) {
     refuse("this raster has more than 2^30 columns or rows, which is the limit of the grid", path);
   }
+  const GdalSession session;
   const OGRSpatialReference* srs = data.GetSpatialRef();
   const bool has_crs = srs != nullptr && !srs->IsEmpty();
   std::array<double, 6> t{};
@@ -142,8 +178,13 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   } else {
     set_map(t, path, shape);
   }
+  shape.crs = declared_crs(data, srs, session, path, warnings);
+  follow_keys(data, srs, path, shape, warnings);
+  shape.plane_unit = shape.plane_unit.empty() ? plane_unit_of_items(data) : shape.plane_unit;
+  if (!has_crs || (srs->IsCompound() == 0 && srs->GetAxesCount() < 3)) {
+    warn_of_vertical_items(data, path, warnings);
+  }
   if (has_crs) {
-    shape.crs = wkt_of(*srs);
     check_axes(*srs, path);
     warn_of_epoch(*srs, path, warnings);
   }

@@ -34,7 +34,9 @@ struct RasterSource::Impl {
   std::mutex mutex;  ///< Guards the mosaic.
   RasterMosaic mosaic;
 
-  void take_unit(const std::string& declared, const std::string& path);
+  void take_unit(const std::string& declared, const std::string& path,
+                 const SourceOptions& options);
+  void take_plane_unit(const std::string& path);
   void frame_mosaic(const std::string& path, const SourceOptions& options);
   void check_size() const;
   void warn_of(const std::vector<RasterSuspects::Suspect>& suspects);
@@ -45,9 +47,19 @@ struct RasterSource::Impl {
 // ---------------------------------------------------------------------------------------------------
 // Opening.
 
-/// Takes the unit that the bands declare where the CRS has none; warns where the two differ.
-void RasterSource::Impl::take_unit(const std::string& declared, const std::string& path) {
+/// Takes the unit that the bands declare where the CRS has none; warns where the two differ, and of one
+/// that is not known unless the caller names a vertical CRS.
+void RasterSource::Impl::take_unit(const std::string& declared, const std::string& path,
+                                   const SourceOptions& options) {
   const std::string unit = height_unit_named(declared);
+  if (unit != "unknown" && !metres_in(unit) &&
+      (frame.vertical_unit == "unknown" || options.vertical_crs.empty())) {
+    warnings.add({"unknown_height_unit",
+                  "the unit of the heights, '" + declared +
+                      "', is none that is known, so nothing is converted; name a vertical CRS with "
+                      "--vertical-crs, or a unit such as 'metre' with 'gdal_edit.py -units'",
+                  path});
+  }
   if (frame.vertical_unit == "unknown") {
     frame.vertical_unit = unit;
     return;
@@ -64,6 +76,23 @@ void RasterSource::Impl::take_unit(const std::string& declared, const std::strin
   }
 }
 
+/// Takes the unit of x and y that the first file tells beside a CRS. Degrees without a CRS have no
+/// length over ground, so there is a warning.
+void RasterSource::Impl::take_plane_unit(const std::string& path) {
+  const std::string& unit = mosaic.first().plane_unit;
+  if (!frame.crs_wkt.empty() || unit.empty()) {
+    return;
+  }
+  frame.horizontal_unit = unit;
+  if (unit != "degree") {
+    return;
+  }
+  warnings.add({"degrees_without_crs",
+                "x and y are in degrees, of no CRS that it tells, so lengths over ground are not "
+                "known; name it with --a-srs, as EPSG:4326",
+                path});
+}
+
 /// Takes over what the files say: types, CRS, units and the map, bounds applied.
 /// @param path  The first file, for errors.
 void RasterSource::Impl::frame_mosaic(const std::string& path, const SourceOptions& options) {
@@ -72,7 +101,8 @@ void RasterSource::Impl::frame_mosaic(const std::string& path, const SourceOptio
   scale = first.scale;
   offset = first.offset;
   set_crs(frame, resolve_source_crs({first.crs, ""}, options, path, warnings));
-  take_unit(mosaic.unit(), path);
+  take_plane_unit(path);
+  take_unit(mosaic.unit(), path, options);
   frame.map = mosaic.map();
   require_resolvable(frame.map, mosaic.width() - 1, mosaic.height() - 1,
                      "is its geotransform what was meant?", path);
@@ -130,7 +160,7 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
   const RasterScan::Joined found = scan.join(run(scan.stage(), scan));
   set_heights(impl->frame, found.fit);
   impl->valid_samples = found.fit.count;
-  impl->warnings.join(impl->mosaic.warnings());
+  impl->warnings.join(warnings_that_count(impl->mosaic.warnings(), options));
   impl->warn_of(found.suspects);
   return RasterSource(std::move(impl));
 }

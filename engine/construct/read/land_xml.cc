@@ -187,15 +187,16 @@ void LandXmlElements::read_crs(const char** attributes) {
     code.erase(0, 5);
   }
   const std::string wkt(attribute(attributes, "ogcWktCode"));
+  const std::string name = first_of(
+      {"horizontalCoordinateSystemName", "projectedCoordinateSystemName",
+       "geographicCoordinateSystemName", "horizontalDatum", "datum", "epsgCode", "name", "desc"});
   if (is_code(code)) {
     crs_ = "EPSG:" + code;
   } else if (!wkt.empty()) {
     crs_ = wkt;
-  } else if (const std::string name =
-                 first_of({"horizontalCoordinateSystemName", "projectedCoordinateSystemName",
-                           "geographicCoordinateSystemName", "horizontalDatum", "datum", "epsgCode",
-                           "name", "desc"});
-             !name.empty()) {
+  } else if (name.starts_with("EPSG:") && is_code(name.substr(5))) {
+    crs_ = name;
+  } else if (!name.empty()) {
     warn("crs_in_words", "the CRS is told as '" + name +
                              "' and by no code, which is not understood; name it with --a-srs");
   }

@@ -3,7 +3,7 @@
 // The CRS of a LAS file: which of its records counts.
 #pragma once
 
-#include "engine/construct/read/geotiff_keys.h"
+#include "engine/construct/grid/geotiff_keys.h"
 #include "engine/construct/read/las_records.h"
 
 namespace ptin {

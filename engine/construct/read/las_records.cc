@@ -65,7 +65,9 @@ void take_record(const LasFile& file, std::uint16_t id, std::uint64_t at, std::u
 }
 
 /// Walks records; returns how many there are before place.end.
-std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& records) {
+/// @param of_liblas  Receives texts under the name of that library, of which others know nothing.
+std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& records,
+                   LasRecords& of_liblas) {
   const std::uint64_t head_bytes = place.extended ? 60 : 54;
   Bytes head(head_bytes);
   std::uint64_t at = place.begin;
@@ -80,17 +82,21 @@ std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& re
     if (bytes > place.end - at) {
       return i;
     }
-    if (text_of(std::span(head).subspan(2, 16)) == "LASF_Projection") {
-      take_record(file, las_value<std::uint16_t>(head, 18), at, bytes, records);
+    const std::string_view user = text_of(std::span(head).subspan(2, 16));
+    const auto id = las_value<std::uint16_t>(head, 18);
+    if (user == "LASF_Projection") {
+      take_record(file, id, at, bytes, records);
+    } else if (user == "liblas" && id == kWkt) {
+      take_record(file, id, at, bytes, of_liblas);
     }
     at += bytes;
   }
   return place.count;
 }
 
-void walk_all(const LasFile& file, const RecordPlace& place, const char* where,
-              LasRecords& records) {
-  const std::uint64_t there = walk(file, place, records);
+void walk_all(const LasFile& file, const RecordPlace& place, const char* where, LasRecords& records,
+              LasRecords& of_liblas) {
+  const std::uint64_t there = walk(file, place, records, of_liblas);
   if (there < place.count) {
     records.warnings.push_back({"las_records",
                                 "the header counts " + std::to_string(place.count) + " records " +
@@ -103,13 +109,16 @@ void walk_all(const LasFile& file, const RecordPlace& place, const char* where,
 }  // namespace
 
 LasRecords read_las_records(const LasFile& file, const LasHeader& header) {
-  LasRecords records;
+  LasRecords records, of_liblas;
   const std::uint64_t points_begin = std::min(header.first_point, file.bytes());
   walk_all(file, {header.header_bytes, points_begin, header.records, false}, "before the points",
-           records);
+           records, of_liblas);
   if (header.extended_records > 0) {
     walk_all(file, {header.first_extended, file.bytes(), header.extended_records, true},
-             "behind the points", records);
+             "behind the points", records, of_liblas);
+  }
+  if (records.wkt.empty()) {
+    records.wkt = std::move(of_liblas.wkt);
   }
   return records;
 }

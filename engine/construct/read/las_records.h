@@ -7,15 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/read/geotiff_keys.h"
+#include "engine/construct/grid/geotiff_keys.h"
 #include "engine/construct/read/las_file.h"
 
 namespace ptin {
 
 /// The records of a LAS file that tell its CRS.
 struct LasRecords {
-  std::vector<std::string> wkt;  ///< The texts that are not empty, in the order of the file.
-  GeoTiffKeys keys;              ///< The last of each kind of record.
+  /// The texts that are not empty, in the order of the file; those that the library libLAS wrote under
+  /// its own name where there are no others.
+  std::vector<std::string> wkt;
+  GeoTiffKeys keys;  ///< The last of each kind of record.
   bool has_math_transform = false;
   std::vector<SourceWarning> warnings;  ///< About records that are not there; they name no file.
 };

@@ -100,20 +100,4 @@ OGRLayer& choose_layer(GDALDataset& data, const LayerWish& wish, const std::stri
   return filled.empty() ? *fitting[0] : *filled[0];
 }
 
-std::string crs_of(OGRLayer& layer) {
-  const OGRSpatialReference* srs = layer.GetSpatialRef();
-  if (srs == nullptr || (srs->GetAuthorityCode(nullptr) == nullptr && srs->GetName() != nullptr &&
-                         STARTS_WITH_CI(srs->GetName(), "Undefined "))) {
-    return {};
-  }
-  char* wkt = nullptr;
-  static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
-  std::string text;
-  if (srs->exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr) {
-    text = wkt;
-  }
-  CPLFree(wkt);
-  return text;
-}
-
 }  // namespace ptin

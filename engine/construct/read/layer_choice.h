@@ -30,8 +30,4 @@ struct LayerWish {
 [[nodiscard]] OGRLayer& choose_layer(GDALDataset& data, const LayerWish& wish,
                                      const std::string& path);
 
-/// The CRS of a layer as WKT2; "" where it has none, or one of those by which a GeoPackage says that
-/// nothing is known ("Undefined Cartesian SRS").
-[[nodiscard]] std::string crs_of(OGRLayer& layer);
-
 }  // namespace ptin

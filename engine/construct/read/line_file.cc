@@ -10,6 +10,8 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/hidden_features.h"
 #include "engine/construct/read/land_xml_lines.h"
@@ -127,13 +129,25 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
     return read_land_xml_lines(path, wish, take, stop);
   }
   const GdalSession session;
+  const ReportedVerticalParts vertical;
   const GDALDatasetUniquePtr data = open_vector(path, session);
   OGRLayer& layer =
       choose_layer(*data, {wish.kind, wish.layer, "name one with " + wish.option}, path);
+  LineFileCrs crs;
+  crs.crs = declared_crs(*data, layer.GetSpatialRef(), session, path, crs.warnings);
+  if (!crs.crs.empty() && !is_crs(crs.crs)) {
+    crs.warnings.add(
+        {"crs_not_understood",
+         "the CRS of these lines, '" + crs.crs.substr(0, 80) +
+             "', is not one that GDAL understands; they are taken to be in that of the "
+             "points",
+         path});
+    crs.crs.clear();
+  }
   LineFeatures features(path, wish, take);
-  SourceWarnings warnings;
-  session.tell_warnings(path, warnings);
+  session.tell_warnings(path, crs.warnings);
   const HiddenFeatures hidden(*data, layer);
+  const GdalSession reading;
   layer.ResetReading();
   for (;;) {
     stop_if_asked(stop, "reading", path);
@@ -145,15 +159,16 @@ LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const 
       features.add(*feature);
     }
   }
-  if (session.failed()) {
-    throw Error(ErrorCode::io_error, session.explain("cannot be read on"), path);
+  if (reading.failed()) {
+    throw Error(ErrorCode::io_error, reading.explain("cannot be read on"), path);
   }
   if (features.lines() == 0) {
     refuse(std::string("there is no ") + (wish.kind == LayerKind::kAreas ? "polygon" : "line") +
                " in layer '" + layer.GetName() + "'; leave the file out, or name another layer",
            path);
   }
-  return {crs_of(layer), {}, features.is_flat(), std::move(warnings)};
+  crs.is_flat = features.is_flat();
+  return crs;
 }
 
 }  // namespace ptin

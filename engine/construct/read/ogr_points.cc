@@ -10,6 +10,7 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
@@ -17,6 +18,7 @@
 #include "engine/construct/read/dxf_units.h"
 #include "engine/construct/read/hidden_features.h"
 #include "engine/construct/read/layer_choice.h"
+#include "engine/construct/read/layer_depths.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -62,6 +64,8 @@ struct OgrPoints::Layer {
   int altitude_mode = -1;  ///< The attribute in which KML tells what its heights are above.
   std::optional<HiddenFeatures> hidden;
 
+  std::string crs;
+
   void open(const std::string& path, const PointChoice& choice, SourceWarnings& warnings);
   void choose_height(const std::string& path, const std::string& field);
 };
@@ -69,6 +73,7 @@ struct OgrPoints::Layer {
 void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice,
                             SourceWarnings& warnings) {
   const GdalSession session;
+  const ReportedVerticalParts vertical;
   data.reset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (data == nullptr) {
@@ -80,6 +85,7 @@ void OgrPoints::Layer::open(const std::string& path, const PointChoice& choice,
                 session.explain("this is no vector data that OGR reads"), path);
   }
   layer = &choose_layer(*data, {LayerKind::kPoints, choice.layer}, path);
+  crs = declared_crs(*data, layer->GetSpatialRef(), session, path, warnings);
   choose_height(path, choice.z_field);
   if (z_field < 0 && EQUAL(data->GetDriverName(), "LIBKML")) {
     altitude_mode = layer->GetLayerDefn()->GetFieldIndex("altitudeMode");
@@ -119,7 +125,8 @@ OgrPoints::OgrPoints(std::string path, const PointChoice& choice)
     : path_(std::move(path)), layer_(std::make_unique<Layer>()) {
   layer_->open(path_, choice, warnings_);
   const GdalSession session;
-  facts_.crs = crs_of(*layer_->layer);
+  refuse_depths(*layer_->data, *layer_->layer, choice.z_field, path_, warnings_);
+  facts_.crs = layer_->crs;
   facts_.units.heights = unit_of_column(choice.z_field);
   if (facts_.units.heights == "degree") {
     facts_.units.heights.clear();

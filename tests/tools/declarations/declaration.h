@@ -28,5 +28,7 @@ struct Declaration {
 [[nodiscard]] std::vector<Declaration> hidden_declarations();
 [[nodiscard]] std::vector<Declaration> companion_declarations();
 [[nodiscard]] std::vector<Declaration> mesh_declarations();
+[[nodiscard]] std::vector<Declaration> crs_declarations();    ///< Of all kinds of sources.
+[[nodiscard]] std::vector<Declaration> depth_declarations();  ///< Likewise.
 
 }  // namespace ptin::tools::testing

@@ -48,7 +48,8 @@ std::vector<Declaration> all_declarations() {
   for (auto list : {testing::raster_declarations(), testing::las_declarations(),
                     testing::text_declarations(), testing::layer_declarations(),
                     testing::mesh_declarations(), testing::raster_format_declarations(),
-                    testing::hidden_declarations(), testing::companion_declarations()}) {
+                    testing::hidden_declarations(), testing::companion_declarations(),
+                    testing::crs_declarations(), testing::depth_declarations()}) {
     all.insert(all.end(), list.begin(), list.end());
   }
   return all;

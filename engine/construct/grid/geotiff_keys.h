@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// GeoTIFF keys outside of a TIFF, as LAS holds them: what they say of the CRS and of units.
+// GeoTIFF keys, as LAS holds them outside of a TIFF: what they say of the CRS and of units.
 #pragma once
 
 #include <string>
@@ -25,6 +25,9 @@ struct DeclaredCrs {
   /// "crs_..." mean nothing where the caller puts another CRS in the place of this one.
   std::vector<SourceWarning> warnings;
 };
+
+/// True where a key of the vertical part is among them.
+[[nodiscard]] bool tell_of_heights(const GeoTiffKeys& keys);
 
 /// Reads what GeoTIFF keys declare, as libgeotiff and GDAL know it; but VerticalUnits decides about
 /// the heights' unit, whatever unit the vertical CRS has that stands beside it: programs name NAVD88

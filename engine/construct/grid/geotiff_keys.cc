@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/read/geotiff_keys.h"
+#include "engine/construct/grid/geotiff_keys.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +15,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
@@ -153,7 +154,7 @@ class KeyReader {
   /// The CRS that some entries name, vertical part included; an empty one where GDAL knows none.
   [[nodiscard]] OGRSpatialReference crs(const std::vector<Entry>& entries) const {
     Bytes tiff = KeyTiff(directory_of(entries), keys_).bytes();
-    const CPLConfigOptionSetter with_vertical("GTIFF_REPORT_COMPD_CS", "YES", false);
+    const ReportedVerticalParts vertical;
     static constexpr const char* kDriver[] = {"GTiff", nullptr};
     char name[64];
     std::snprintf(name, sizeof name, "/vsimem/ptin_keys_%p.tif", static_cast<void*>(&tiff));
@@ -191,6 +192,9 @@ class KeyReader {
     return vertical_unit_of(srs);
   }
 
+  /// The words for the vertical part; "" for none.
+  [[nodiscard]] std::string citation(const std::vector<Entry>& entries) const;
+
  private:
   const GeoTiffKeys& keys_;
 };
@@ -210,6 +214,50 @@ void warn(DeclaredCrs& declared, const char* kind, std::string message) {
 
 /// Old codes of VerticalCSType mean heights above an ellipsoid.
 bool is_above_ellipsoid(std::uint16_t code) { return code >= 5001 && code <= 5033; }
+
+/// The code of the CRS in plan; 0 where none is named.
+std::uint16_t code_of_plane(const std::vector<Entry>& entries) {
+  for (const Key key : {kProjectedCrs, kGeodeticCrs}) {
+    const std::uint16_t code = code_of(entries, key);
+    if (code != kUndefined && code != kUserDefined) {
+      return code;
+    }
+  }
+  return kUndefined;
+}
+
+/// Says of which kind the CRS is that a code names, where the key for that is absent or says nothing.
+void tell_model(std::vector<Entry>& entries) {
+  constexpr std::uint16_t kProjected = 1, kGeographic = 2;
+  if (code_of(entries, kModelType) != kUndefined) {
+    return;
+  }
+  const std::uint16_t plane = code_of(entries, kProjectedCrs);
+  const std::uint16_t model = plane != kUndefined                            ? kProjected
+                              : code_of(entries, kGeodeticCrs) != kUndefined ? kGeographic
+                                                                             : kUndefined;
+  if (model != kUndefined) {
+    std::erase_if(entries, [](const Entry& e) { return e[0] == kModelType; });
+    entries.insert(entries.begin(), Entry{kModelType, 0, 1, model});
+  }
+}
+
+/// The text of a key; "" where it is not there.
+std::string text_of_key(const std::vector<Entry>& entries, Key key, const Bytes& text) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& e) { return e[0] == key && e[1] == 34737; });
+  if (found == entries.end() || (*found)[3] >= text.size()) {
+    return "";
+  }
+  const std::size_t begin = (*found)[3];
+  const std::string all(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end());
+  const std::string own = all.substr(0, (*found)[2]);
+  return own.substr(0, own.find_first_of(std::string("|\0", 2)));
+}
+
+std::string KeyReader::citation(const std::vector<Entry>& entries) const {
+  return text_of_key(entries, kVerticalCitation, keys_.text);
+}
 
 /// Adds heights above the ellipsoid to a horizontal CRS. Such a CRS has metres: with another unit the
 /// unit alone is kept.
@@ -255,6 +303,10 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
       warn(declared, "crs_vertical",
            "its vertical CRS (VerticalCSTypeGeoKey " + std::to_string(code) +
                ") is not one that is known; name it by --vertical-crs");
+    } else if (const std::string words = reader.citation(entries); !words.empty()) {
+      warn(declared, "crs_vertical_in_words",
+           "its heights are told to be above '" + words.substr(0, 80) +
+               "', which is no code and not used; name the vertical CRS by --vertical-crs");
     }
     declared.units.heights = unit ? unit->name : "";
     if (unit && !metres_in(unit->name)) {
@@ -275,6 +327,11 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
 
 }  // namespace
 
+bool tell_of_heights(const GeoTiffKeys& keys) {
+  const auto entries = entries_of(keys.directory);
+  return entries && std::any_of(entries->begin(), entries->end(), is_vertical);
+}
+
 DeclaredCrs crs_of_keys(const GeoTiffKeys& keys) {
   DeclaredCrs declared;
   const auto entries = entries_of(keys.directory);
@@ -291,12 +348,19 @@ DeclaredCrs crs_of_keys(const GeoTiffKeys& keys) {
   const bool has_plane = code_of(horizontal, kModelType) != kUndefined ||
                          code_of(horizontal, kGeodeticCrs) != kUndefined ||
                          code_of(horizontal, kProjectedCrs) != kUndefined;
-  const OGRSpatialReference plane = has_plane ? reader.crs(horizontal) : OGRSpatialReference();
+  const std::uint16_t code = code_of_plane(horizontal);
+  tell_model(horizontal);
+  OGRSpatialReference plane = has_plane ? reader.crs(horizontal) : OGRSpatialReference();
+  if (code != kUndefined && plane.IsLocal() != 0) {
+    plane.Clear();  // what GDAL makes of a code that it does not know
+  }
   declared.crs = wkt_of(plane);
   if (has_plane && declared.crs.empty()) {
     warn(declared, "crs_not_understood",
-         "its GeoTIFF keys are not ones that GDAL understands, and the terrain has no CRS; name it "
-         "by --a-srs");
+         (code == kUndefined ? std::string("its GeoTIFF keys are not ones that GDAL understands")
+                             : "the code of its CRS in its GeoTIFF keys, " + std::to_string(code) +
+                                   ", is not one that GDAL understands") +
+             ", and the terrain has no CRS; name it by --a-srs");
   }
   const std::optional<LengthUnit> plane_unit = reader.unit(code_of(horizontal, kPlaneUnits));
   if (declared.crs.empty() && plane_unit) {
