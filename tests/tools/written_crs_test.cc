@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What meshes state of CRS and heights is read again by `ptin build` as it was.
+#include <cpl_conv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <ogr_spatialref.h>
 
 #include "tests/tools/program.h"
 
@@ -12,6 +14,9 @@ namespace {
 using nlohmann::json;
 using testing::answer_of;
 using testing::expect_done;
+using testing::hills;
+using testing::make_raster;
+using testing::RasterRecipe;
 using testing::TestFolder;
 using testing::write_file;
 
@@ -46,6 +51,31 @@ class WrittenCrs : public ::testing::Test {
       }
     }
   }
+  /// The same of a terrain that is built from a GeoTIFF of that of a raster.
+  [[nodiscard]] json raster_again() const {
+    const std::string tiff = folder_.file("m.tif");
+    expect_done({"export", folder_.file("p.ptin"), "-o", tiff, "--overwrite", "-q"});
+    expect_done({"build", tiff, "-o", folder_.file("m.ptin"), "-q", "--overwrite"});
+    return facts("m.ptin");
+  }
+  void expect_the_same_raster() const {
+    const json before = facts("p.ptin"), after = raster_again();
+    for (const char* const key : {"name", "vertical_known", "vertical_name", "geographic"})
+      EXPECT_EQ(after[0].at(key), before[0].at(key)) << key;
+    EXPECT_EQ(after[1], before[1]);
+  }
+  /// The WKT of a CRS with heights above its ellipsoid, in metres.
+  [[nodiscard]] static std::string promoted(const char* code) {
+    OGRSpatialReference srs;
+    EXPECT_EQ(srs.SetFromUserInput(code), OGRERR_NONE);
+    EXPECT_EQ(srs.PromoteTo3D(nullptr), OGRERR_NONE);
+    char* text = nullptr;
+    const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+    srs.exportToWkt(&text, options);
+    std::string wkt = text;
+    CPLFree(text);
+    return wkt;
+  }
   TestFolder folder_;
 };
 
@@ -70,6 +100,33 @@ TEST_F(WrittenCrs, TellsTheUnitsWhereThereIsNoCrs) {
   expect_the_same({".ply", ".obj"});
   build({}, "x,y,z\n");
   expect_the_same({".ply", ".obj"});
+}
+
+/// A raster, for which GeoTIFF has no form of its CRS of three axes but by codes.
+TEST_F(WrittenCrs, OfAGeoTiffTellsHeightsAboveTheEllipsoid) {
+  for (const char* const crs : {"EPSG:32632", "EPSG:25832"}) {
+    const std::string solid = promoted(crs);
+    RasterRecipe recipe;
+    recipe.value = hills;
+    make_raster(folder_.file("r.tif"), recipe);
+    expect_done({"build", folder_.file("r.tif"), "--a-srs", solid, "-o", folder_.file("p.ptin"),
+                 "-q", "--overwrite"});
+    EXPECT_EQ(facts("p.ptin")[0].at("vertical_name"), "ellipsoidal height");
+    expect_the_same_raster();
+  }
+}
+
+/// EPSG has no code for heights above the ellipsoid of NAD83, so the plane alone is stated.
+TEST_F(WrittenCrs, OfAGeoTiffIsAtLeastThatOfThePlane) {
+  RasterRecipe recipe;
+  recipe.value = hills;
+  make_raster(folder_.file("r.tif"), recipe);
+  expect_done({"build", folder_.file("r.tif"), "--a-srs", promoted("EPSG:2229"), "-o",
+               folder_.file("p.ptin"), "-q", "--overwrite"});
+  const json again = raster_again();
+  EXPECT_EQ(again[0].at("code"), "EPSG:2229");
+  EXPECT_EQ(again[1].at("horizontal"), "US survey foot");
+  EXPECT_EQ(again[1].at("height"), "metre");
 }
 
 TEST_F(WrittenCrs, TellsTheVerticalCrs) {

@@ -17,6 +17,7 @@
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "tools/export/tin_samples.h"
+#include "tools/formats/geotiff_crs.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
 
@@ -316,11 +317,8 @@ GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
   auto transform = grid.geotransform();
   require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
-  OGRSpatialReference srs;
-  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  if (!target.crs.wkt.empty() && srs.importFromWkt(target.crs.wkt.c_str()) == OGRERR_NONE) {
-    require_done(dataset->SetSpatialRef(&srs), "cannot give the raster its CRS", target.path);
-  }
+  set_geotiff_crs(*dataset, target.crs.wkt, target.content.value == PixelValue::kHeight,
+                  target.path);
   GDALRasterBand* band = dataset->GetRasterBand(1);
   require_done(band->SetNoDataValue(target.nodata), "cannot set the nodata value", target.path);
   const std::string unit = unit_of(target);

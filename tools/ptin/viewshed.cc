@@ -21,6 +21,7 @@
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/facts/numbers.h"
+#include "tools/formats/geotiff_crs.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
 #include "tools/output/gdal_output.h"
@@ -136,10 +137,7 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   double transform[6] = {seen.first.x - seen.step_x / 2, seen.step_x, 0,
                          seen.first.y + seen.step_y / 2, 0,           -seen.step_y};
   require_done(file->SetGeoTransform(transform), "cannot place the raster", options.output);
-  if (!wkt.empty()) {
-    require_done(file->SetProjection(wkt.c_str()), "cannot give the raster its CRS",
-                 options.output);
-  }
+  set_geotiff_crs(*file, wkt, false, options.output);
   GDALRasterBand* band = file->GetRasterBand(1);
   require_done(band->SetNoDataValue(static_cast<double>(Sight::kNothing)),
                "cannot set the nodata value", options.output);

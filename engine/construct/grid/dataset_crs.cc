@@ -68,6 +68,14 @@ std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,
   return wkt_of_srs(*srs);
 }
 
+std::string with_third_axis(const std::string& plane) {
+  const GdalSession session;
+  OGRSpatialReference srs;
+  const bool is_made =
+      srs.importFromWkt(plane.c_str()) == OGRERR_NONE && srs.PromoteTo3D(nullptr) == OGRERR_NONE;
+  return is_made ? wkt_of_srs(srs) : plane;
+}
+
 std::string height_unit_of_prj(GDALDataset& data) {
   const CPLStringList lines(CSLTokenizeString2(prj_of(data).c_str(), "\r\n", 0));
   for (int i = 0; i < lines.size(); ++i) {

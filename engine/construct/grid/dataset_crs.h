@@ -41,6 +41,9 @@ class ReportedVerticalParts {
                                        const GdalSession& opening, const std::string& path,
                                        SourceWarnings& warnings);
 
+/// A CRS with heights above its ellipsoid, in metres; the same text where there is no such CRS.
+[[nodiscard]] std::string with_third_axis(const std::string& plane);
+
 /// The unit of heights in the .prj of a dataset (`Zunits` of old ones, as "FEET"); "" for none.
 [[nodiscard]] std::string height_unit_of_prj(GDALDataset& data);
 

@@ -121,11 +121,14 @@ void warn_of_epoch(const OGRSpatialReference& srs, const std::string& path,
   }
 }
 
-/// `plane`, or where keys declare heights: the CRS with these.
+/// `plane` with the heights that keys declare, if they declare any.
 std::string with_heights(const DeclaredCrs& declared, const std::string& path,
                          const std::string& plane) try {
-  const Crs crs = resolve_crs(declared.crs, "", declared.vertical_crs);
-  return crs.vertical_known ? crs.wkt : plane;
+  if (!resolve_crs(declared.crs, "", declared.vertical_crs).vertical_known) {
+    return plane;
+  }
+  return declared.vertical_crs.empty() ? with_third_axis(plane)
+                                       : resolve_crs(plane, "", declared.vertical_crs).wkt;
 } catch (const Error& e) {
   throw Error(e.code(), e.message(), e.context().empty() ? path : e.context());
 }
@@ -149,7 +152,7 @@ void follow_keys(GDALDataset& data, const OGRSpatialReference* srs, const std::s
     shape.crs = declared.crs;
     shape.plane_unit = declared.units.plane;
   }
-  if (!declared.crs.empty() && is_same_in_plan(shape.crs, declared.crs)) {
+  if (!shape.crs.empty() && !declared.crs.empty()) {
     shape.crs = with_heights(declared, path, shape.crs);
   }
   for (SourceWarning warning : declared.warnings) {
