@@ -15,8 +15,8 @@ namespace {
 
 /// The unit of depths that the header of a chart tells (S-57, DSPM_DUNI); "" where it is silent.
 std::string unit_of_depths(GDALDataset& data) {
-  constexpr std::array<const char*, 5> kUnits = {"", "metres", "fathoms and feet", "feet",
-                                                 "fathoms and fractions"};
+  constexpr std::array<const char*, 5> kUnitsOfDepths = {"", "metres", "fathoms and feet", "feet",
+                                                         "fathoms and fractions"};
   OGRLayer* const header = data.GetLayerByName("DSID");
   if (header == nullptr) {
     return "";
@@ -25,7 +25,7 @@ std::string unit_of_depths(GDALDataset& data) {
   const OGRFeatureUniquePtr feature(header->GetNextFeature());
   const int field = feature == nullptr ? -1 : feature->GetFieldIndex("DSPM_DUNI");
   const int code = field < 0 ? 0 : feature->GetFieldAsInteger(field);
-  return code > 0 && code < 5 ? kUnits[static_cast<std::size_t>(code)] : "";
+  return code > 0 && code < 5 ? kUnitsOfDepths[static_cast<std::size_t>(code)] : "";
 }
 
 }  // namespace
