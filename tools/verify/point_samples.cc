@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/geometry/point.h"
 #include "engine/stop.h"
+#include "tools/verify/decimal_steps.h"
 #include "tools/verify/sorted_samples.h"
 #include "tools/verify/source_samples.h"
 #include "tools/verify/text_samples.h"
@@ -129,7 +130,8 @@ class PointSamples final : public SourceSamples {
  private:
   void read_text(const std::string& path, const std::stop_token& stop);
   void read_stream(const std::string& path, const SampleResources& resources);
-  void add(const std::array<double, 3>& p);
+  /// @param grid  Where `p` lies on the grid, rounded.
+  void add(const std::array<double, 3>& p, MapPoint grid);
   void add_sample(GridPoint p, double height);
 
   const StoreFacts& facts_;
@@ -147,7 +149,7 @@ void PointSamples::read_text(const std::string& path, const std::stop_token& sto
   while (text.next(line)) {
     if (lines++ % kLinesBetweenLooks == 0) stop_if_asked(stop, "verification");
     if (line.misfit.empty()) {
-      add(line.point);
+      add(line.point, grid_point_of({line.point[0], line.point[1]}, facts_, choices_));
     } else if (!choices_.points.skip_invalid) {
       misfits_.add(path + ":" + std::to_string(line.number) + ": " + line.misfit);
     }
@@ -161,16 +163,21 @@ void PointSamples::read_text(const std::string& path, const std::stop_token& sto
 void PointSamples::read_stream(const std::string& path, const SampleResources& resources) {
   const auto stream = open_point_stream(path, choices_.points, choices_.nodata,
                                         {&resources.memory, resources.stop, {}});
+  const AffineMap& map = facts_.map;
   std::vector<SourcePoint> batch;
   while (stream->next(batch)) {
     stop_if_asked(resources.stop, "verification");
-    for (const SourcePoint& p : batch) add({to_double(p.x), to_double(p.y), to_double(p.z)});
+    for (const SourcePoint& p : batch) {
+      const std::array<double, 3> place{to_double(p.x), to_double(p.y), to_double(p.z)};
+      add(place, choices_.resolution ? grid_point_of({place[0], place[1]}, facts_, choices_)
+                                     : MapPoint{steps_of(p.x, map.origin_x, map.step_x),
+                                                steps_of(p.y, map.origin_y, map.step_y)});
+    }
   }
 }
 
-void PointSamples::add(const std::array<double, 3>& p) {
+void PointSamples::add(const std::array<double, 3>& p, MapPoint grid) {
   if (is_left_out(p, choices_)) return;
-  const MapPoint grid = grid_point_of({p[0], p[1]}, facts_, choices_);
   const GridBox& b = facts_.bounds;
   if (grid.x < b.min_x || grid.x > b.max_x || grid.y < b.min_y || grid.y > b.max_y) {
     if (!lines_.has_boundary()) extent_.add(grid.x, grid.y);
@@ -207,7 +214,12 @@ class FirstPoints {
                                           {&resources.memory, resources.stop, {}});
     std::vector<SourcePoint> batch;
     while (seen_ < kMost && stream->next(batch)) {
-      for (const SourcePoint& p : batch) add({to_double(p.x), to_double(p.y), to_double(p.z)});
+      for (const SourcePoint& p : batch) {
+        const std::array<double, 3> place{to_double(p.x), to_double(p.y), to_double(p.z)};
+        add(place, choices_.resolution ? grid_point_of({place[0], place[1]}, facts_, choices_)
+                                       : MapPoint{steps_of(p.x, map.origin_x, map.step_x),
+                                                  steps_of(p.y, map.origin_y, map.step_y)});
+      }
     }
   }
   void check(const std::vector<std::string>& paths) const {
