@@ -214,12 +214,7 @@ class FirstPoints {
                                           {&resources.memory, resources.stop, {}});
     std::vector<SourcePoint> batch;
     while (seen_ < kMost && stream->next(batch)) {
-      for (const SourcePoint& p : batch) {
-        const std::array<double, 3> place{to_double(p.x), to_double(p.y), to_double(p.z)};
-        add(place, choices_.resolution ? grid_point_of({place[0], place[1]}, facts_, choices_)
-                                       : MapPoint{steps_of(p.x, map.origin_x, map.step_x),
-                                                  steps_of(p.y, map.origin_y, map.step_y)});
-      }
+      for (const SourcePoint& p : batch) add({to_double(p.x), to_double(p.y), to_double(p.z)});
     }
   }
   void check(const std::vector<std::string>& paths) const {

@@ -311,12 +311,7 @@ bool DeclaredComments::take_unit(std::string_view value, bool is_vertical, bool 
   if (!metres_in(unit)) {
     return false;
   }
-  if (!is_vertical) {
-    set(plane_, unit);
-  }
-  if (!is_plane) {
-    set(heights_, unit);
-  }
+  set(is_vertical ? heights_ : is_plane ? plane_ : both_, unit);
   return true;
 }
 
@@ -422,14 +417,16 @@ void DeclaredComments::note(std::string_view comment) {
 }
 
 DeclaredUnits DeclaredComments::units() const {
-  DeclaredUnits units{plane_.value, heights_.value};
+  // A unit of heights alone, or of x and y alone, goes before one of all three.
+  DeclaredUnits units{plane_.value.empty() ? both_.value : plane_.value,
+                      heights_.value.empty() ? both_.value : heights_.value};
   if (!is_crs(crs_.value)) {
     return units;
   }
   units.plane.clear();
   // "units: ft" beside a CRS in metres may be said of heights, or be wrong.
-  const bool is_of_both = !plane_.value.empty() && plane_.comment == heights_.comment;
-  if (is_of_both && !is_geographic_or_in(crs_.value, heights_.value)) {
+  if (heights_.value.empty() && !both_.value.empty() &&
+      !is_geographic_or_in(crs_.value, both_.value)) {
     units.heights.clear();
   }
   return units;
@@ -442,10 +439,10 @@ std::optional<double> DeclaredComments::nodata() const {
 
 void DeclaredComments::tell(const std::string& path, SourceWarnings& warnings) const {
   std::vector<std::string> all = not_followed_;
-  if (units().heights.empty() && !heights_.value.empty()) {
-    DeclaredComments heights(*this);
-    heights.quote(heights_.comment);
-    all = heights.not_followed_;
+  if (units().heights.empty() && !both_.value.empty()) {
+    DeclaredComments others(*this);
+    others.quote(both_.comment);
+    all = others.not_followed_;
   }
   if (all.empty()) {
     return;

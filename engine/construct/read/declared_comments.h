@@ -17,7 +17,8 @@ namespace ptin {
 ///   - a CRS: `crs: EPSG:2154`, also `srs`, `epsg`, `projection`, `coordinate system` and their like,
 ///     with one code, WKT or a text of PROJ; GMT's `@Je2154` and `@Jp"+proj=..."`;
 ///   - a vertical CRS: `vertical crs: EPSG:5773`;
-///   - units: `units: ft`, `File units = feet`, `unit m`; of heights alone `z units: ft`;
+///   - units: `units: ft`, `File units = feet`, `unit m`; of heights alone `z units: ft` or
+///     `height_units: ft`, which goes before the others;
 ///   - a value that means no height: `nodata -9999`.
 /// All else that tells of a CRS, a datum, a unit, an axis, a shift, a scale or a rotation is kept to be
 /// warned of, as are two declarations that contradict each other. What says that there is none ("scale:
@@ -51,10 +52,12 @@ class DeclaredComments {
   void set(Declared& declared, std::string value);
   void quote(std::string_view comment);
 
-  std::string_view comment_;  ///< That is looked at.
-  bool is_of_heights_ =
-      false;  ///< It began with a vertical CRS: a unit behind that is the heights'.
-  Declared crs_, vertical_crs_, plane_, heights_, nodata_;
+  std::string_view comment_;  ///< The one that is looked at.
+  /// It began with a vertical CRS: a unit behind that is the heights'.
+  bool is_of_heights_ = false;
+  Declared crs_, vertical_crs_, nodata_;
+  Declared plane_, heights_,
+      both_;  ///< Units of x and y alone, of heights alone, and of all three.
   std::vector<std::string> not_followed_;
 };
 

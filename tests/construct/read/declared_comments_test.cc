@@ -56,6 +56,8 @@ TEST(DeclaredComments, NameUnits) {
   }
   EXPECT_EQ(of({"z units: ft"}).units(), (DeclaredUnits{"", "foot"}));
   EXPECT_EQ(of({"Vertical_Units = feet"}).units(), (DeclaredUnits{"", "foot"}));
+  EXPECT_EQ(of({"units: m", "height_units: ft"}).units(), (DeclaredUnits{"metre", "foot"}));
+  EXPECT_EQ(of({"height_units: ft", "units: m"}).units(), (DeclaredUnits{"metre", "foot"}));
   EXPECT_EQ(of({"horizontal units: m"}).units(), (DeclaredUnits{"metre", ""}));
   EXPECT_EQ(of({"crs: EPSG:4326", "units: ft"}).units(), (DeclaredUnits{"", "foot"}));
   EXPECT_EQ(of({"crs: EPSG:2154", "units: m"}).units(), (DeclaredUnits{"", "metre"}));

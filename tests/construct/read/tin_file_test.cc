@@ -159,12 +159,12 @@ TEST(Ply, TakesNamesInCapitalsAndBlanksBehindThem) {
                       "element face 2\nproperty list uchar int Vertex_Indices\nend_header\n"
                       "0.1 0 -1\n10 0.5 0\n10 10 1\n0 10 2\n3 0 1 2\n3 0 2 3\n"));
   const std::string file =
-      "ply\nformat ascii 1.0\ncomment EPSG: 25832\ncomment units: ft\nelement vertex 3\nproperty "
+      "ply\nformat ascii 1.0\ncomment EPSG: 2222\ncomment units: ft\nelement vertex 3\nproperty "
       "float x\nproperty float y\nproperty float z\nelement face 1\n"
       "property list uchar int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0";
   const TinFileFacts facts = parse(read_ply, file + "\n3 0 1 2").facts;
-  EXPECT_EQ(facts.crs, "EPSG:25832");
-  EXPECT_EQ(facts.units, (DeclaredUnits{"foot", "foot"}));
+  EXPECT_EQ(facts.crs, "EPSG:2222");
+  EXPECT_EQ(facts.units, (DeclaredUnits{"", "foot"}));
   EXPECT_TRUE(says(refusal_of(read_ply, file + " 7\n3 0 1 2\n"), "more values"));
 }
 
