@@ -94,8 +94,12 @@ TEST(PointSource, SnapsNegativeCoordinatesLikeOthers) {
 }
 
 TEST(PointSource, DropsTheDigitsThatTheGridDoesNotKeep) {
+  const PointSet fine = read("0 0 0\n1000000 0 0\n0 0.0014 0\n0 5 0\n");
+  EXPECT_EQ(fine.frame.map.step_x, 0.001);
+  EXPECT_EQ(fine.positions.size(), 4U);
+  EXPECT_EQ(fine.largest_shift_plan, 0.0004);
   const PointSet set = read("0 0 0\n1000000 0 0\n0 0.0001 0\n0 5 0\n");
-  EXPECT_EQ(set.frame.map.step_x, 0.001);
+  EXPECT_EQ(set.frame.map.step_x, 1) << "of the rounded digits none is left";
   EXPECT_EQ(set.positions.size(), 3U);
   EXPECT_EQ(set.largest_shift_plan, 0.0001);
   expect_source_refused("0 0 0\n123456789012345678 0 0\n0 1e-18 0\n", "2^30");
