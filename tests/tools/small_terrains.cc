@@ -40,8 +40,7 @@ void make_raster(const std::string& path, const RasterRecipe& r) {
   }
   data->SetGeoTransform(transform);
   OGRSpatialReference srs;
-  srs.importFromEPSG(r.epsg);
-  data->SetSpatialRef(&srs);
+  if (r.epsg != 0 && srs.importFromEPSG(r.epsg) == OGRERR_NONE) data->SetSpatialRef(&srs);
   GDALRasterBand& band = *data->GetRasterBand(1);
   if (r.nodata) band.SetNoDataValue(*r.nodata);
   if (!r.unit.empty()) band.SetUnitType(r.unit.c_str());

@@ -29,9 +29,9 @@ struct RasterRecipe {
   double north = 4000000.0;
   double pixel = 30.0;
   bool columns_go_west = false;  ///< The first column is the easternmost: a negative pixel width.
-  int epsg = 32611;
-  std::string type = "Float32";       ///< By GDAL's name.
-  std::string unit;                   ///< The unit of the heights, as the band declares it.
+  int epsg = 32611;              ///< 0: no CRS.
+  std::string type = "Float32";  ///< By GDAL's name.
+  std::string unit;              ///< The unit of the heights, as the band declares it.
   std::vector<std::string> creation;  ///< Options of GDAL's driver.
 };
 /// Writes it as a GeoTIFF.

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/crs_beside.h"
 #include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/open_points.h"
 #include "engine/construct/points/point_spool.h"
 #include "engine/construct/read/column_names.h"
-#include "engine/construct/read/crs_beside.h"
 #include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/text_rows.h"

@@ -10,6 +10,7 @@
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/grid/crs_beside.h"
 #include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/raster/raster_items.h"
@@ -183,6 +184,9 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   }
   shape.crs = declared_crs(data, srs, session, path, warnings);
   follow_keys(data, srs, path, shape, warnings);
+  if (shape.crs.empty() && shape.georeferenced) {
+    take_crs_beside(path, shape.crs, warnings);  // GDAL looks for it beside few formats.
+  }
   shape.plane_unit = shape.plane_unit.empty() ? plane_unit_of_items(data) : shape.plane_unit;
   if (!has_crs || (srs->IsCompound() == 0 && srs->GetAxesCount() < 3)) {
     warn_of_vertical_items(data, path, warnings);

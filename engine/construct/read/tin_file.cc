@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "engine/construct/grid/crs_beside.h"
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/read/crs_beside.h"
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
 #include "engine/stop.h"

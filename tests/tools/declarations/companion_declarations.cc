@@ -108,6 +108,14 @@ std::vector<Declaration> companion_declarations() {
                                                              kObjTin.substr(8));
                    return {folder.file("source.obj")};
                  }});
+  all.push_back(
+      {"raster.prj", [](const TestFolder& folder, bool is_declared) -> std::vector<std::string> {
+         RasterRecipe recipe;
+         recipe.epsg = 0;
+         make_raster(folder.file("source.tif"), recipe);
+         if (is_declared) write_file(folder.file("source.prj"), kFeetPrj);
+         return {folder.file("source.tif")};
+       }});
   return all;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/read/crs_beside.h"
+#include "engine/construct/grid/crs_beside.h"
 
 #include <memory>
 
@@ -10,8 +10,6 @@
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/gdal_session.h"
-#include "engine/construct/read/input_kind.h"
-#include "engine/construct/read/text_header.h"
 
 namespace ptin {
 namespace {
@@ -23,7 +21,9 @@ struct Beside {
 
 /// What a .prj beside the file holds.
 Beside read_beside(const std::string& path) {
-  const std::string unpacked = is_packed(path) ? path.substr(0, path.rfind('.')) : path;
+  constexpr const char* kPacked = ".gz";  // "a.xyz.gz" has its CRS in a.prj
+  const bool is_packed = EQUAL(CPLGetExtension(path.c_str()), kPacked + 1);
+  const std::string unpacked = is_packed ? path.substr(0, path.rfind('.')) : path;
   for (const char* extension : {"prj", "PRJ"}) {
     const std::string name = CPLResetExtension(unpacked.c_str(), extension);
     VSILFILE* const file = VSIFOpenL(name.c_str(), "rb");
@@ -34,7 +34,7 @@ Beside read_beside(const std::string& path) {
     std::string text(kLongest, '\0');
     text.resize(VSIFReadL(text.data(), 1, text.size(), file));
     VSIFCloseL(file);
-    return {name, std::string(trimmed(text))};
+    return {name, CPLString(text).Trim()};
   }
   return {};
 }

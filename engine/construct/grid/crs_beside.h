@@ -11,7 +11,7 @@ namespace ptin {
 
 /// Sets `crs` from the .prj beside a file that names none. Warns of one that names another CRS than the
 /// file, whose own one is believed.
-/// @param crs  That the file declares, or "".
+/// @param crs  The one that the file declares, or "".
 /// Cost: asks the system for one or two names.
 void take_crs_beside(const std::string& path, std::string& crs, SourceWarnings& warnings);
 
