@@ -213,10 +213,11 @@ export class Inquiry {
   }
 
   private showSight(answer: AnswerOf<'sight'>, frame: Frame): void {
-    const { sight, request, certainty } = answer;
+    const { sight, request, certainty, from, to } = answer;
     const { verdict, clearance, fresnel } = sight;
     const inMetres = (value: number): number => value * frame.scaleZ;
     this.tell({
+      fromX: from.x, fromY: from.y, toX: to.x, toY: to.y,
       verdict, length: sight.length, metres: inMetres(sight.length), clearanceMin: clearance?.min ?? null,
       clearanceMax: clearance?.max ?? null, fresnel: fresnel?.ratio ?? null,
     });
