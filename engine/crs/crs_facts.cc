@@ -35,7 +35,7 @@ void add_compound(const OGRSpatialReference& srs, CrsFacts& facts) {
   facts.vertical_unit = unit_called(text_or_empty(unit), metres);
 }
 
-/// Of a CRS whose third axis counts heights.
+/// Sets the facts of a CRS whose third axis counts heights.
 void add_third_axis(const OGRSpatialReference& srs, CrsFacts& facts) {
   facts.has_third_axis = true;
   facts.vertical_name = srs.IsLocal() != 0 ? facts.name : "ellipsoidal height";

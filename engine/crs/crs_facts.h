@@ -17,7 +17,7 @@ struct CrsFacts {
   std::string code;  ///< "EPSG:32611" of the horizontal part; empty when it has none.
   bool has_third_axis =
       false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.
-  /// Of the vertical part; "ellipsoidal height" of a third axis. Empty when it is unknown.
+  /// The name of the vertical part; "ellipsoidal height" of a third axis. Empty when it is unknown.
   std::string vertical_name;
   std::string vertical_code;  ///< Of the vertical part, or of a CRS of three axes as a whole.
   bool geographic = false;
@@ -27,7 +27,7 @@ struct CrsFacts {
   /// The short form for the headers of files: the code where there is one, else the WKT. That of a
   /// CRS of three axes tells of its heights, too.
   [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
-  /// The same of a vertical CRS; empty where there is none apart from horizontal_text().
+  /// The text of a vertical CRS; empty where there is none apart from horizontal_text().
   [[nodiscard]] std::string vertical_text() const {
     if (has_third_axis) return {};
     return vertical_code.empty() ? vertical_name : vertical_code;

@@ -122,7 +122,7 @@ class Terrain : public OpenedTerrain {
 
   /// Cut, fill and net volume over or under a level, or between two terrains.
   [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
-  /// The same over or under several levels, in one pass.
+  /// Volumes over or under several levels, in one pass.
   [[nodiscard]] std::vector<VolumeResult> volumes(const VolumeRequest& request,
                                                   std::span<const double> levels) const;
 

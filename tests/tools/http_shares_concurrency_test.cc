@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What one client cannot take from the others: memory of answers and of bodies, connections.
+// Shares that one client cannot take from the others: memory of answers and of bodies, connections.
 #include <atomic>
 #include <cstdint>
 #include <memory>

@@ -29,7 +29,7 @@ using testing::run_ptin;
 using testing::TestFolder;
 using Spoken = std::vector<std::string>;
 
-/// What options that take a value and are no length or height call it.
+/// Names of the values of options that are no length or height.
 const std::set<std::string> kOtherTypes = {"A",
                                            "ADDRESS:PORT",
                                            "ADDRESS[/BITS]",
@@ -95,7 +95,7 @@ class Measured : public ::testing::Test {
   TestFolder folder_;
 };
 
-/// What asks so that an option counts, without it; and how many metres are a value for it.
+/// A question in which an option counts, without it; and how many metres are a value for it.
 struct AskedWith {
   Spoken words;
   double metres = 3;
@@ -260,7 +260,7 @@ TEST_F(Measured, AreRefusedInUnitsThatNobodyKnows) {
   }
 }
 
-/// Of heights of no known unit the plane's is taken, as for slopes; in degrees lengths are metres.
+/// Heights of no known unit are taken in the plane's, as for slopes; in degrees lengths are metres.
 TEST_F(Measured, AreInWhatIsTakenForTheUnit) {
   const std::string metres = built("metres", 32611, "");
   const auto levels = [&](const std::string& interval) {

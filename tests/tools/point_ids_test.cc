@@ -26,7 +26,7 @@ using testing::TestFolder;
 using testing::wall;
 using testing::write_file;
 
-/// What a layer holds: its name, its CRS, and of each feature the attributes and the geometry.
+/// The contents of a layer: its name, its CRS, and of each feature the attributes and the geometry.
 struct ReadLayer {
   std::string name, crs;
   std::vector<std::map<std::string, std::string>> features;  ///< null attributes left out

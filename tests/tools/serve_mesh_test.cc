@@ -115,7 +115,7 @@ TEST(ServeSmall, SendsShorterPiecesWhereMemoryIsShort) {
   }
 }
 
-/// What is held and what is sent are there together: 280 bytes a vertex.
+/// The mesh that is held and the one that is sent are there together: 280 bytes a vertex.
 TEST(ServeSmall, SendsPiecesUntilMemoryIsFull) {
   TestFolder folder;
   serve::ServeOptions options = serve_options(folder);

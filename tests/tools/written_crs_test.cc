@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What meshes state of CRS and heights is read again by `ptin build` as it was.
+// CRSs and heights that meshes state are read again by `ptin build` as they were.
 #include <cpl_conv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -37,7 +37,7 @@ class WrittenCrs : public ::testing::Test {
     crs.erase("wkt");  // what a code stands for may differ from what was spelled out
     return {crs, info.at("units")};
   }
-  /// The same of a terrain that is built from a mesh of that of points.
+  /// Facts of a terrain that is built from a mesh of that of points.
   [[nodiscard]] json again(const std::string& extension, const std::string& subcommand) const {
     const std::string mesh = folder_.file("m" + extension);
     expect_done({subcommand, folder_.file("p.ptin"), "-o", mesh, "--overwrite", "-q"});
@@ -51,7 +51,7 @@ class WrittenCrs : public ::testing::Test {
       }
     }
   }
-  /// The same of a terrain that is built from a GeoTIFF of that of a raster.
+  /// Facts of a terrain that is built from a GeoTIFF of that of a raster.
   [[nodiscard]] json raster_again() const {
     const std::string tiff = folder_.file("m.tif");
     expect_done({"export", folder_.file("p.ptin"), "-o", tiff, "--overwrite", "-q"});

@@ -16,7 +16,7 @@ namespace ptin::tools {
                                   const std::string& plural = {});
 /// Ten significant digits, in groups of three before the point: "83,780,376.2".
 [[nodiscard]] std::string grouped_number(double value);
-/// The same with the digits behind the point that are certain, and no more than seven digits where some
+/// A number with the digits behind the point that are certain, and no more than seven digits where some
 /// are: "83,780,376", "1,234.5".
 /// @param uncertain  How far the value may be off, at most.
 [[nodiscard]] std::string grouped_number(double value, double uncertain);

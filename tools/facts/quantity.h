@@ -23,7 +23,7 @@ struct Length {
   double metres = 0.0;  ///< Of the unit behind it; 0: there was none.
 
   [[nodiscard]] bool has_unit() const noexcept { return metres > 0; }
-  /// The same in a unit of so many metres. The two feet, which differ by two millionths, are one: a
+  /// The value in a unit of so many metres. The two feet, which differ by two millionths, are one: a
   /// foot is the one of who is asked.  REQUIRES: has_unit().
   [[nodiscard]] double in(double metres_of_unit) const noexcept;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a header of text states of CRS and units, as `ptin build` reads it again (tools/API.md, "What a
+// Lines of a header of text that state CRS and units, as `ptin build` reads it again (tools/API.md, "What a
 // source declares").
 #pragma once
 

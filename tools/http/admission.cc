@@ -139,7 +139,7 @@ struct Admission::Shared {
     }
     return nullptr;
   }
-  /// What a ticket that stands in its line lacks. Behind one of its own client's that lacks memory it
+  /// The lack of a ticket that stands in its line. Behind one of its own client's that lacks memory it
   /// lacks memory too.
   [[nodiscard]] WaitsFor lack_of(const Ticket& ticket) const {
     const std::size_t i = index_of(ticket.lane);

@@ -31,7 +31,7 @@ enum class Lane : std::uint8_t {
 inline constexpr std::size_t kLanes = 4;
 [[nodiscard]] const char* name_of(Lane lane) noexcept;
 
-/// What a task lacks that has not begun.
+/// The lack of a task that has not begun.
 enum class WaitsFor : std::uint8_t {
   kTurn,   ///< A thread: others are before it.
   kMemory  ///< There are threads that have nothing to do.

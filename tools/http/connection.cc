@@ -141,7 +141,8 @@ void Connection::begin_request() {
   parser_->body_limit(host_.limits.body_bytes);
   set_reading_deadline();
   if (buffer_.size() == 0) return read_more();
-  // What came together is answered in turn with what others sent, and not from within the last answer.
+  // Requests that came together are answered in turn with those of others, and not from within the
+  // last answer.
   boost::asio::post(socket_.get_executor(), [self = shared_from_this()] { self->parse(); });
 }
 
@@ -291,7 +292,7 @@ void Connection::check_head() {
   }
 }
 
-/// Of HTTP/1.0 it is to be ignored (RFC 9110, section 10.1.1).
+/// An expectation of HTTP/1.0 is to be ignored (RFC 9110, section 10.1.1).
 bool Connection::expects_continue() const {
   const auto& head = parser_->get();
   return head.version() >= 11 && boost::beast::iequals(head["Expect"], "100-continue");

@@ -31,7 +31,7 @@ bool names_version(std::string_view line) {
 
 }  // namespace
 
-/// What a proxy before this server might read in another way: it would take the body of one request
+/// A framing that a proxy before this server might read in another way: it would take the body of one request
 /// for another one (RFC 9112, sections 3.2 and 6.1).
 std::optional<Problem> Connection::problem_of_framing() const {
   const auto& head = parser_->get();
@@ -47,7 +47,7 @@ std::optional<Problem> Connection::problem_of_framing() const {
   return std::nullopt;
 }
 
-/// What stands in the buffer up to the end of a line, or all of it.
+/// The text in the buffer up to the end of a line, or all of it.
 std::string_view Connection::begun_line() const {
   const auto* const bytes = static_cast<const char*>(buffer_.data().data());
   const std::string_view begun(bytes, buffer_.size());

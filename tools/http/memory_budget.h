@@ -15,7 +15,7 @@
 
 namespace ptin::http {
 
-/// What memory is lent for.
+/// The use that memory is lent for.
 enum class MemoryUse : std::uint8_t {
   kQuestion,  ///< Of a tile or a sweep, or a piece of a file: while it is computed.
   kPoint,     ///< Of the lane of points: while it is computed.
@@ -101,7 +101,7 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
 
   // With the mutex.
   [[nodiscard]] std::uint64_t lent_now() const;
-  /// What is left beside all that is lent, and for a use.
+  /// Bytes left beside all that is lent, and for a use.
   [[nodiscard]] std::uint64_t left_beside(MemoryUse use) const;
   [[nodiscard]] std::uint64_t left_for(MemoryUse use) const;
   [[nodiscard]] bool is_within_share(const std::string& client, MemoryUse use) const;

@@ -17,7 +17,7 @@ struct AnswerOptions {
   std::string output;  ///< Empty: CSV on stdout.
   bool overwrite = false;
 };
-/// What a subcommand can write beside CSV.
+/// Kinds of files that a subcommand can write beside CSV.
 struct AnswerKinds {
   bool layer = true;  ///< Then - is GeoJSON on stdout, else it is CSV there.
   bool plot = false;

@@ -18,7 +18,7 @@
 
 namespace ptin::tools {
 
-/// What an option measures, and with it the unit of its plain numbers.
+/// The quantity that an option measures, and with it the unit of its plain numbers.
 enum class MeasureKind : std::uint8_t {
   kHeight,  ///< The height's unit; where nobody knows it, what is taken for it (unit_of_ground()).
   kGround,  ///< Map units; in a geographic CRS metres.

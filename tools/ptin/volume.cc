@@ -114,7 +114,7 @@ nlohmann::json interval_json(const CertifiedVolume& v) {
   return {{"volume", v.value}, {"low", v.low}, {"high", v.high}};
 }
 
-/// What a level, or the other terrain, comes to.
+/// The result of a level, or of the other terrain.
 nlohmann::json volumes_json(const VolumeResult& result) {
   return {{"cut", interval_json(result.cut)},
           {"fill", interval_json(result.fill)},

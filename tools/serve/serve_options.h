@@ -52,9 +52,9 @@ struct ServeOptions {
   std::string version;  ///< Of the program; part of every ETag.
 };
 
-/// What questions of each lane take of the memory, and, where it is not given, all of it: so much that
-/// every lane can be full, sweeps and tiles with all of a question's, points with a quarter, and a
-/// sixth of it all for bodies, and answers that are written.
+/// Divides the memory among the lanes: sweeps and tiles take all of a question's, points a quarter.
+/// Where none is given it is so much that every lane can be full, and a sixth more for bodies and for
+/// answers that are written.
 inline void divide_memory(ServeOptions& options) noexcept {
   const std::uint64_t threads = options.http.threads, one = options.question.question_memory;
   options.http.question_bytes = one;

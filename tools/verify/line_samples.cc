@@ -87,7 +87,7 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
   const auto place_of = [&](const SourcePoint& p, bool is_laid) {
     const double x = steps_of(p.x, map.origin_x, map.step_x);
     const double y = steps_of(p.y, map.origin_y, map.step_y);
-    // What of a line without heights has no surface below is no part of the terrain.
+    // Parts of a line without heights that have no surface below are no part of the terrain.
     const double least = is_laid ? -kGridMax : 0.0;
     if (!(x >= least && y >= least && x <= kGridMax && y <= kGridMax)) {
       refuse("these lines reach beyond what the terrain may hold: they are not those of its build",

@@ -19,7 +19,7 @@ struct Beside {
   std::string text;
 };
 
-/// What a .prj beside the file holds.
+/// The text of a .prj beside the file.
 Beside read_beside(const std::string& path) {
   constexpr const char* kPacked = ".gz";  // "a.xyz.gz" has its CRS in a.prj
   const bool is_packed = EQUAL(CPLGetExtension(path.c_str()), kPacked + 1);

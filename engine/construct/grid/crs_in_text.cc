@@ -53,7 +53,7 @@ std::string without_blanks_before(std::string text) {
   return text.erase(0, std::min(text.find_first_not_of(" \t\r\n"), text.size()));
 }
 
-/// What stands behind `before`, up to one of the characters `after`; "" where that is not there.
+/// The text behind `before`, up to one of the characters `after`; "" where that is not there.
 std::string between(std::string_view text, std::string_view before, std::string_view after) {
   const std::size_t at = text.find(before);
   if (at == std::string_view::npos) {

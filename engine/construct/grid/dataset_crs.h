@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a dataset of GDAL's declares of its CRS, also where GDAL does not say so by itself.
+// The CRS that a dataset of GDAL's declares, also where GDAL does not say so by itself.
 #pragma once
 
 #include <string>

@@ -65,7 +65,7 @@ class DecimalRange {
   void join(const DecimalRange& other) noexcept;
   /// The most digits after the point; 0 when nothing was added.
   [[nodiscard]] int decimals() const noexcept;
-  /// The same when each is rounded to at most so many, and loses the zeros at its end then.
+  /// The most that stay when each is rounded to at most so many, and loses the zeros at its end.
   [[nodiscard]] int decimals_rounded_to(int decimals) const noexcept;
   /// The steps of the smallest decimal; INT64_MAX where none was added.
   [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept;

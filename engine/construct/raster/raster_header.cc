@@ -29,7 +29,7 @@ std::string begin_of(const std::string& path, std::size_t most) {
   return text;
 }
 
-/// What a line "key = value" of a header says; "" where there is none.
+/// The value of a line "key = value" of a header; "" where there is none.
 std::string value_of(const std::string& header, std::string_view key) {
   constexpr std::string_view kBlanks = " \t\r\"";
   for (std::size_t at = 0; at < header.size();) {

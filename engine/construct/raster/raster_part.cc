@@ -21,7 +21,7 @@ namespace {
 /// The largest floats, in whatever digits: they are what programs write for no height, and no height.
 constexpr double kNoHeight = 3.4028e38;
 
-/// What stands for no source of a VRT among integers, outside of all types but Int32. Among floats NaN
+/// The value that stands for no source of a VRT among integers, outside of all types but Int32. Among floats NaN
 /// does.
 constexpr std::int32_t kBackground = -2'020'304'050;
 

@@ -39,7 +39,7 @@ class TiffReader {
     }
   }
 
-  /// What a tag holds; empty where it is not there.
+  /// The bytes of a tag; empty where it is not there.
   [[nodiscard]] TiffBytes content(std::uint16_t tag) const {
     if (directory_ == 0) {
       return {};

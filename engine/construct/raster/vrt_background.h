@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What lies behind the sources of a VRT. GDAL hands out 0, or the nodata value, where no source of a
+// The background behind the sources of a VRT. GDAL hands out 0, or the nodata value, where no source of a
 // band covers a sample, which nobody can tell from a height.
 #pragma once
 
@@ -15,7 +15,7 @@ struct CloseDataset {
   void operator()(GDALDataset* data) const noexcept;
 };
 
-/// The same VRT once more, whose bands read as `background` where no source covers a sample: beyond
+/// A VRT opened once more, whose bands read as `background` where no source covers a sample: beyond
 /// their rectangles, and where they have none of their own values (NODATA, UseMaskBand). VRTs that it
 /// is made of are looked through. Null where the dataset is no VRT, or one that is computed in another
 /// way (a pixel function, pansharpening): then its own values stand. A VRT that warps has an alpha band

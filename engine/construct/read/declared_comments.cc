@@ -53,7 +53,7 @@ bool has_any(const std::vector<std::string>& words, Names names) {
                      [&](const std::string& word) { return holds(names, word); });
 }
 
-/// What a comment may be about; each is told by the words before its value.
+/// A subject that a comment may be about; each is told by the words before its value.
 enum class Subject { kNone, kCrs, kVerticalCrs, kUnit, kNodata, kOther };
 
 constexpr std::array<std::string_view, 20> kCrsNames = {"crs",
@@ -91,7 +91,7 @@ constexpr std::array<std::string_view, 9> kUnitAdjectives = {
 constexpr std::array<std::string_view, 9> kNodataNames = {
     "nodata",         "no data",    "nodata value",       "no data value", "missing value",
     "missing values", "null value", "missing data value", "void value"};
-/// Of these a comment says nothing that can be followed.
+/// Names behind which nothing stands that can be followed.
 constexpr std::array<std::string_view, 14> kOtherNames = {"datum",          "horizontal datum",
                                                           "geodetic datum", "ellipsoid",
                                                           "spheroid",       "geoid",

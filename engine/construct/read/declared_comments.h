@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What comments of text, of points and of TINs alike, declare of their coordinates.
+// Declarations of coordinates in comments: of texts, of points and of TINs alike.
 #pragma once
 
 #include <optional>

@@ -132,7 +132,7 @@ void TextRows::begin() {
   numbering_.may_be = numbering_.is_guess || (header.empty() && count >= kFewestNumbered);
 }
 
-/// What to do where bars divide the first line, which separate nothing; "" where they do not.
+/// The advice where bars divide the first line, which separate nothing; "" where they do not.
 std::string TextRows::hint_of_bars() const {
   std::ptrdiff_t bars = 0;
   for (const std::string& name : table_.header()) {

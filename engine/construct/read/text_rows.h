@@ -66,7 +66,7 @@ class TextRows {
   [[nodiscard]] std::string_view field(std::size_t role) const { return fields_[columns_[role]]; }
   /// The field that tells the row apart. REQUIRES: choose_id() returned true.
   [[nodiscard]] std::string_view id() const { return fields_[id_]; }
-  /// What is wrong with the field of a role: "the x of this point, 'nan', " and `what`.
+  /// The fault of the field of a role: "the x of this point, 'nan', " and `what`.
   [[nodiscard]] std::string fault_of_field(std::size_t role, const std::string& what) const;
   /// That it is no number.
   [[nodiscard]] std::string fault_of_no_number(std::size_t role) const;

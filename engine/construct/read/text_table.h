@@ -62,7 +62,7 @@ class TextTable {
   /// True where the header is a comment.
   [[nodiscard]] bool is_told_by_comment() const noexcept { return is_told_by_comment_; }
 
-  /// What comments before the first row declare; all of it is known when the header is.
+  /// Declarations of the comments before the first row; all of it is known when the header is.
   [[nodiscard]] const DeclaredComments& declared() const noexcept { return declared_; }
 
   /// From here on a row may have more fields than the first one: what follows the last column goes
@@ -71,7 +71,7 @@ class TextTable {
 
   /// From here on next() hands out rows that have another number of fields than the first one, too.
   void let_rows_misfit() noexcept { may_misfit_ = true; }
-  /// What is wrong with the number of fields of the row that was read last; "" for nothing.
+  /// The fault of the number of fields of the row that was read last; "" for none.
   [[nodiscard]] std::string misfit() const;
   [[nodiscard]] bool is_misfit() const;
 

@@ -144,7 +144,7 @@ void TinReceiver::add_face(std::span<const std::int64_t> ids, const std::string&
   sink_.add_face(ids);
 }
 
-/// What comments declare, which files with declarations of their own (LandXML) do not read.
+/// Takes the declarations of comments, which files with others of their own (LandXML) do not read.
 void TinReceiver::take_comments() {
   if (!comments_.crs().empty()) {
     facts_.crs = comments_.crs();

@@ -22,7 +22,7 @@ bool XyzReader::is_number(std::size_t role, Decimal& value) const {
   return parse_number(rows_.field(role), value) == NumberKind::kNumber;
 }
 
-/// What is wrong with the row that was read last. REQUIRES: something is.
+/// The fault of the row that was read last. REQUIRES: it has one.
 std::string XyzReader::fault() const {
   if (table_.is_misfit()) {
     return table_.misfit();

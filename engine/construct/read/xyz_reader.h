@@ -47,7 +47,7 @@ class XyzReader {
     std::string fault;
   };
   [[nodiscard]] const Skipped& skipped() const noexcept { return skipped_; }
-  /// What comments declare before the first row, which this reads.
+  /// Declarations of the comments before the first row, which this reads.
   /// @throws Error as next()
   [[nodiscard]] const DeclaredComments& declared() {
     static_cast<void>(table_.header());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the border of a polygon shares with triangles.
+// Points that the border of a polygon shares with triangles.
 #pragma once
 
 #include <array>

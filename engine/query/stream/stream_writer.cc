@@ -222,7 +222,7 @@ void sort_by_rank(std::span<PendingSplit> splits) {
   std::copy(sorted.begin(), sorted.end(), splits.begin());
 }
 
-/// What the servings say that they brought is known before anything is read.
+/// Records that the servings brought are known before anything is read.
 void Writer::admit_what_is_told() const {
   std::uint64_t told = 0;
   for (const StreamHeld& held : request_.held) {

@@ -15,7 +15,7 @@ DeclaredComments of(const std::vector<std::string>& comments) {
   return declared;
 }
 
-/// What is quoted as not followed; "" for nothing.
+/// The comments that are quoted as not followed; "" for none.
 std::string told(const DeclaredComments& declared) {
   SourceWarnings warnings;
   declared.tell("a.xyz", warnings);

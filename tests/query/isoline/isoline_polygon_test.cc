@@ -58,7 +58,7 @@ std::vector<Stretch> stretches_of(const Isolines& lines) {
   return all;
 }
 
-/// What of each stretch lies in the polygon.
+/// The parts of each stretch that lie in the polygon.
 std::vector<Stretch> cut_in_rationals(const std::vector<Stretch>& whole, const Polygon& polygon) {
   std::vector<Stretch> cut;
   for (const Stretch& s : whole) {

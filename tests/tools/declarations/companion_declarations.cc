@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What comments within points and TINs declare, and a .prj beside them.
+// Declarations in comments of points and TINs, and in a .prj beside a source.
 #include "tests/support/las_file.h"
 #include "tests/tools/declarations/declaration.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What sources of all kinds declare of their CRS that GDAL alone does not tell.
+// Declarations of a CRS, in sources of all kinds, that GDAL alone does not tell.
 #include <array>
 #include <cstring>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What drawings declare: features that are no part of the ground, a CRS that is not read.
+// Declarations of drawings: features that are no part of the ground, a CRS that is not read.
 #include "tests/tools/declarations/declaration.h"
 
 namespace ptin::tools::testing {

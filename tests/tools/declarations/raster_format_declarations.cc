@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What rasters of single formats declare, most of which GDAL passes over.
+// Declarations of single formats of rasters, most of which GDAL passes over.
 #include <string>
 #include <vector>
 

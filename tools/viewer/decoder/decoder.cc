@@ -58,7 +58,7 @@ PTIN_EXPORT(certifiedError) double certified_error() { return reader().certifica
 PTIN_EXPORT(certifiedDeviation) double certified_deviation() {
   return reader().certificate().deviation;
 }
-/// What holds of any mesh of the terrain.
+/// Facts that hold of any mesh of the terrain.
 PTIN_EXPORT(reliefError) double relief_error() {
   return ptin::certificate_by_relief(reader().facts()).error;
 }
