@@ -34,7 +34,7 @@ nlohmann::json json_of(const BuildPlan& p) {
 void print_plan(const BuildPlan& p) {
   std::fprintf(stderr,
                "plan: %s%s in %s of %lld, %s, at most %s of memory, %s of "
-               "temporary disk and %s of output (ordinary terrain takes half of it), roughly %s\n",
+               "temporary disk and %s of output, roughly %s\n",
                p.is_estimate ? "up to about " : "",
                counted(p.vertices, "vertex", "vertices").c_str(), counted(p.leaves, "tile").c_str(),
                static_cast<long long>(p.tile_side),
