@@ -3,6 +3,7 @@
 // JSON, forms and queries that nobody means well with: each is read in one pass, or refused.
 #include "tools/serve/client_json.h"
 
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -114,14 +115,17 @@ http::Request posted(std::string body, const std::string& type) {
 }
 
 TEST(Question, RefusesShortlyWhatIsLong) {
-  const ParameterFact facts[] = {{"coords", "string", "a place"}, {"error", "number", "metres"}};
+  std::string coords;
+  std::optional<double> error;
+  const ask::Parameters rows = {{.name = "coords", .into = &coords},
+                                {.name = "error", .into = &error}};
   for (const auto& request :
        {posted("{\"" + std::string(900000, 'k') + "\":0}", "application/json"),
         posted("{\"" + times(300000, "\xc3\xa9", "") + "\":0}", "application/json"),
         posted(times(300000, "a", "&"), "application/x-www-form-urlencoded"),
         posted(times(300000, "a=1", "&"), "application/x-www-form-urlencoded")}) {
     try {
-      const Question question(request, facts);
+      const Question question(request, rows);
       ADD_FAILURE();
     } catch (const http::Problem& problem) {
       EXPECT_EQ(problem.status(), 400U);
@@ -130,24 +134,28 @@ TEST(Question, RefusesShortlyWhatIsLong) {
   }
   try {
     const Question question(
-        posted("error=" + std::string(900000, 'x'), "application/x-www-form-urlencoded"), facts);
-    static_cast<void>(question.number("error"));
+        posted("error=" + std::string(900000, 'x'), "application/x-www-form-urlencoded"), rows);
+    question.read(rows);
     ADD_FAILURE();
   } catch (const http::Problem& problem) {
     EXPECT_LT(problem.detail().size(), 300U);
   }
   const Question question(
-      posted(std::string(900000, '&') + "coords=here", "application/x-www-form-urlencoded"), facts);
+      posted(std::string(900000, '&') + "coords=here", "application/x-www-form-urlencoded"), rows);
   EXPECT_EQ(question.text("coords"), "here");
 }
 
 TEST(Question, KeepsTheMembersOfABodyAsTheyCame) {
-  const ParameterFact facts[] = {{"pairs", "array", "ends"}, {"error", "number", "metres"}};
+  std::string pairs;
+  std::optional<double> error;
+  const ask::Parameters rows = {{.name = "pairs", .into = &pairs, .is_json = true},
+                                {.name = "error", .into = &error}};
   const Question question(posted(R"({"pairs": [[1, 2.5], []], "error": 5})", "application/json"),
-                          facts);
+                          rows);
   EXPECT_EQ(question.text("pairs"), "[[1,2.5],[]]");
   EXPECT_EQ(question.json("pairs"), nlohmann::json::parse("[[1,2.5],[]]"));
-  EXPECT_EQ(question.number("error"), 5.0);
+  question.read(rows);
+  EXPECT_EQ(error, 5.0);
   EXPECT_EQ(question.canonical(), "5:error1=55:pairs12=[[1,2.5],[]]");
 }
 

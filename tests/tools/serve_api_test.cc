@@ -38,6 +38,7 @@ TEST_F(Serve, DescribesItselfAsOpenApi) {
           EXPECT_TRUE(type == "integer"   ? example.is_number_integer()
                       : type == "number"  ? example.is_number()
                       : type == "boolean" ? example.is_boolean()
+                      : type == "array"   ? example.is_array()
                                           : example.is_string())
               << parameter;
         }

@@ -427,7 +427,7 @@ TEST_F(SlopeExport, RefusesOptionsThatSayNothing) {
   fails({"-o", tif, "--pixel-size", "5", "--what", "slope", "--azimuth", "3"}, "--azimuth: tells");
   fails({"-o", tif, "--pixel-size", "5", "--altitude", "3"}, "--altitude: tells");
   fails({"-o", tif, "--pixel-size", "5", "--what", "hillshade", "--altitude", "91"},
-        "--altitude: must be from 0 to 90 degrees");
+        "--altitude: must be a number from 0 to 90; 91 is none");
   fails({"-o", tif, "--pixel-size", "5", "--what", "hillshade", "--azimuth", "nan"}, "--azimuth");
   fails({"-o", tif, "--pixel-size", "5", "--what", "slope", "--nodata", "0"}, "--nodata: is for");
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"ground_points.csv.ptin"});

@@ -7,8 +7,8 @@
 
 #include "tests/tools/program.h"
 #include "tests/tools/refusal.h"
+#include "tools/facts/nearest_name.h"
 #include "tools/ptin/command.h"
-#include "tools/ptin/nearest_name.h"
 
 namespace ptin::tools {
 namespace {
@@ -79,9 +79,9 @@ TEST(Usage, SaysHowManyValuesThereAreAndWhich) {
   expect_refusal(run_ptin({"highest", "a.ptin", "--error", "five"}), 2,
                  "--error: must be a number >= 0, in the height's unit, or with a unit behind it");
   expect_refusal(run_ptin({"sight", "a.ptin", "1", "2", "3", "4", "5", "6", "--curvature", "5m"}),
-                 2, "--curvature: 5m is no number");
+                 2, "--curvature: must be a number from 0 to 1; 5m is none");
   expect_refusal(run_ptin({"refine", "a.ptin", "--vertices", "1.5", "-o", "a.ply"}), 2,
-                 "--vertices: 1.5 is no whole number");
+                 "--vertices: must be a whole number >= 0; 1.5 is none");
 }
 
 TEST(NearestName, IsWithinAThirdOfTheWord) {

@@ -4,28 +4,17 @@
 #pragma once
 
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/crs/border_move.h"
-#include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 
 namespace ptin::tools {
 
 [[nodiscard]] inline nlohmann::json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
-
-/// How far the border of voids may have moved in an answer; null where nothing bounds it.
-[[nodiscard]] inline nlohmann::json border_move_json(const StoreFile& store,
-                                                     double certified_error) {
-  return number_or_null(border_moved_at_most(store, certified_error));
-}
-
-/// The object `units` of every answer.
-[[nodiscard]] inline nlohmann::json units_json(const CrsFacts& crs) {
-  return {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
 }
 
 [[nodiscard]] constexpr const char* name_of(PointState s) noexcept {
@@ -44,6 +33,19 @@ namespace ptin::tools {
       break;
   }
   return "undefined";
+}
+
+/// The points of each line of a profile that has any.
+[[nodiscard]] inline std::vector<std::span<const ProfilePoint>> lines_of(
+    const ProfileResult& profile) {
+  std::vector<std::span<const ProfilePoint>> lines;
+  const std::span<const ProfilePoint> all(profile.points);
+  for (std::size_t begin = 0, i = 1; i <= all.size(); ++i) {
+    if (i < all.size() && all[i].line == all[begin].line) continue;
+    lines.push_back(all.subspan(begin, i - begin));
+    begin = i;
+  }
+  return lines;
 }
 
 }  // namespace ptin::tools

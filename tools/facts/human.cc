@@ -109,6 +109,14 @@ std::string printable(std::string text) {
   return text;
 }
 
+std::string shown(std::string_view text) {
+  constexpr std::size_t kMost = 64;
+  if (text.size() <= kMost) return std::string(text);
+  std::size_t end = kMost;  // Bytes that go on with a character are 10xxxxxx.
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
+  return std::string(text.substr(0, end)) + "...";
+}
+
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
   std::size_t begin = 0;

@@ -79,7 +79,7 @@ void set_field(OGRFeature& feature, int field, const VectorFile::Value& value) {
 
 void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::string& path) {
   for (const VectorFile::Field& f : wanted.fields) {
-    OGRFieldDefn field(f.name, ogr_type(f.type));
+    OGRFieldDefn field(f.name.c_str(), ogr_type(f.type));
     if (f.type == VectorFile::FieldType::kInteger) field.SetWidth(18);
     if (f.type == VectorFile::FieldType::kFlag) field.SetWidth(1);
     if (f.type == VectorFile::FieldType::kBoolean) field.SetSubType(OFSTBoolean);
@@ -195,7 +195,7 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     if (layer_ == nullptr) throw gdal_failure("cannot create the output", path_);
     create_fields(*layer_, layer, path_);
     for (const Field& field : layer.fields)
-      fields_.push_back(layer_->GetLayerDefn()->GetFieldIndex(field.name));
+      fields_.push_back(layer_->GetLayerDefn()->GetFieldIndex(field.name.c_str()));
     if (dataset_->TestCapability(ODsCTransactions) != 0 &&
         dataset_->StartTransaction() != OGRERR_NONE) {
       throw gdal_failure("cannot begin to write the output", path_);

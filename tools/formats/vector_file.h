@@ -47,7 +47,7 @@ class VectorFile {
   /// or 1, kBoolean true or false where the format knows them.
   enum class FieldType { kInteger, kFlag, kReal, kText, kBoolean };
   struct Field {
-    const char* name;
+    std::string name;
     FieldType type;
   };
   struct Layer {

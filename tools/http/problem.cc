@@ -13,14 +13,6 @@ std::string reason_of(unsigned status) {
   return name == "<unknown-status>" ? "Unknown" : std::string(name);
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 64;
-  if (text.size() <= kMost) return std::string(text);
-  std::size_t end = kMost;  // Bytes that go on with a character are 10xxxxxx.
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) --end;
-  return std::string(text.substr(0, end)) + "...";
-}
-
 Response Problem::response() const {
   nlohmann::ordered_json json = {{"type", "about:blank"},
                                  {"title", reason_of(status_)},

@@ -66,9 +66,6 @@ class Problem : public std::exception {
   std::optional<unsigned> retry_after_;
 };
 
-/// A client's text as a sentence quotes it: cut behind 64 bytes, at the end of a character.
-[[nodiscard]] std::string shown(std::string_view text);
-
 /// "Not Found" of 404; "Unknown" of a status that HTTP does not name.
 [[nodiscard]] std::string reason_of(unsigned status);
 

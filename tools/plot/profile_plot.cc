@@ -54,17 +54,6 @@ std::vector<LegendEntry> legend_of(const ProfileResult& profile, const PanelScal
 
 }  // namespace
 
-std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile) {
-  std::vector<std::span<const ProfilePoint>> lines;
-  const std::span<const ProfilePoint> all(profile.points);
-  for (std::size_t begin = 0, i = 1; i <= all.size(); ++i) {
-    if (i < all.size() && all[i].line == all[begin].line) continue;
-    lines.push_back(all.subspan(begin, i - begin));
-    begin = i;
-  }
-  return lines;
-}
-
 void plot_profile(const std::string& path, bool overwrite, const ProfileResult& profile,
                   const std::vector<std::string>& ids, const PlotUnits& units) {
   const auto lines = lines_of(profile);

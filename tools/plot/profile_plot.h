@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "engine/query/terrain.h"
+#include "tools/facts/answers.h"
 #include "tools/plot/panel.h"
 
 namespace ptin::tools {
-
-/// The points of a profile, line by line.
-[[nodiscard]] std::vector<std::span<const ProfilePoint>> lines_of(const ProfileResult& profile);
 
 /// Writes the plot. Distances of all lines begin at 0 and have one scale, and so have heights.
 /// @param path  A name of is_picture_name().

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/answer_output.h"
 
+#include <utility>
+
 #include "engine/error.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
@@ -10,17 +12,16 @@
 
 namespace ptin::tools {
 
-void add_answer_options(CLI::App& app, AnswerOptions& options, AnswerKinds kinds) {
+void add_answer_output(ask::Parameters& rows, OutputOptions& options, AnswerKinds kinds) {
   std::string help = "Write .csv";
   if (kinds.layer) help += ", a layer (" + known_vector_extensions() + ")";
-  if (kinds.plot) help += ",\na plot (" + known_picture_extensions() + ")";
-  help += kinds.layer ? ", or - for\nGeoJSON on stdout; default: CSV to stdout"
-                      : ", or - for CSV on\nstdout";
-  app.add_option("-o,--output", options.output, help)->type_name("OUT");
-  app.add_flag("--overwrite", options.overwrite, "Replace an existing output");
+  if (kinds.plot) help += ", a plot (" + known_picture_extensions() + ")";
+  help += kinds.layer ? ", or - for GeoJSON on stdout; default: CSV to stdout"
+                      : ", or - for CSV on stdout";
+  add_output(rows, options, std::move(help), false);
 }
 
-AnswerForm form_of(const AnswerOptions& options, bool json, AnswerKinds kinds) {
+AnswerForm form_of(const OutputOptions& options, bool json, AnswerKinds kinds) {
   if (options.output.empty()) return AnswerForm::kStdout;
   if (options.output == "-") {
     if (!json) return kinds.layer ? AnswerForm::kLayer : AnswerForm::kStdout;
@@ -45,7 +46,7 @@ AnswerForm form_of(const AnswerOptions& options, bool json, AnswerKinds kinds) {
   return form;
 }
 
-void write_csv(const AnswerOptions& options, AnswerForm form, bool json, const std::string& text) {
+void write_csv(const OutputOptions& options, AnswerForm form, bool json, const std::string& text) {
   if (form == AnswerForm::kStdout && !json) write_to_stdout(text);
   if (form != AnswerForm::kCsv) return;
   OutputFile out(options.output, options.overwrite);
@@ -53,7 +54,7 @@ void write_csv(const AnswerOptions& options, AnswerForm form, bool json, const s
   out.publish();
 }
 
-nlohmann::json output_json(const AnswerOptions& options) {
+nlohmann::json output_json(const OutputOptions& options) {
   return options.output.empty() ? nlohmann::json() : nlohmann::json(options.output);
 }
 

@@ -8,21 +8,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/ptin/command.h"
+#include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
 
-/// -o and --overwrite.
-struct AnswerOptions {
-  std::string output;  ///< Empty: CSV on stdout.
-  bool overwrite = false;
-};
 /// Kinds of files that a subcommand can write beside CSV.
 struct AnswerKinds {
   bool layer = true;  ///< Then - is GeoJSON on stdout, else it is CSV there.
   bool plot = false;
 };
-void add_answer_options(CLI::App& app, AnswerOptions& options, AnswerKinds kinds = {});
+/// -o, without which CSV goes to stdout, and --overwrite.
+void add_answer_output(ask::Parameters& rows, OutputOptions& options, AnswerKinds kinds = {});
 
 enum class AnswerForm : std::uint8_t {
   kStdout,  ///< CSV on stdout.
@@ -34,13 +30,13 @@ enum class AnswerForm : std::uint8_t {
 /// cannot be kept.
 /// @throws Error as check_output(); invalid_argument  unknown extension; both the answer and --json
 ///                                                    would go to stdout
-[[nodiscard]] AnswerForm form_of(const AnswerOptions& options, bool json, AnswerKinds kinds = {});
+[[nodiscard]] AnswerForm form_of(const OutputOptions& options, bool json, AnswerKinds kinds = {});
 
 /// Writes CSV where the form asks for it; nothing for other forms. With `json` stdout is taken.
 /// @throws Error as OutputFile, as write_to_stdout()
-void write_csv(const AnswerOptions& options, AnswerForm form, bool json, const std::string& text);
+void write_csv(const OutputOptions& options, AnswerForm form, bool json, const std::string& text);
 
 /// The name in JSON: null on stdout.
-[[nodiscard]] nlohmann::json output_json(const AnswerOptions& options);
+[[nodiscard]] nlohmann::json output_json(const OutputOptions& options);
 
 }  // namespace ptin::tools

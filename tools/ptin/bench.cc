@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin bench: how long questions take on this disk, cold and warm, and which way of reading is best.
-#include <cmath>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/crs/crs_facts.h"
@@ -10,7 +11,6 @@
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
-#include "tools/facts/numbers.h"
 #include "tools/measure/measure_io.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
@@ -27,30 +27,26 @@ namespace {
 
 struct BenchOptions {
   IoRequest request;
-  Measures measures;
   int threads = 0;
-  std::string memory;
-  std::string output;
-  bool overwrite = false;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
 };
 
 void check_plot(const BenchOptions& options) {
-  if (options.output.empty()) return;
-  if (!is_picture_name(options.output)) {
+  if (options.out.output.empty()) return;
+  if (!is_picture_name(options.out.output)) {
     throw Error(ErrorCode::invalid_argument,
                 "unknown extension; the plot's name ends in " + known_picture_extensions(),
-                options.output);
+                options.out.output);
   }
-  check_output(options.output, options.overwrite);
+  check_output(options.out.output, options.out.overwrite);
 }
 
 int run_bench(const BenchOptions& options, const Context& context) {
-  if (options.measures.wait()) {
-    options.measures.settle(crs_facts(*StoreFile::open(options.request.file)));
+  if (context.reading->waits()) {
+    context.reading->settle(crs_facts(*StoreFile::open(options.request.file)));
   }
   IoRequest request = options.request;
-  if (!(request.seconds > 0) || !std::isfinite(request.seconds))
-    throw Error(ErrorCode::invalid_argument, "--seconds must be a finite number above 0");
   check_plot(options);
   install_sigbus_guard();
   request.most_threads = thread_count(options.threads);
@@ -62,52 +58,50 @@ int run_bench(const BenchOptions& options, const Context& context) {
   };
   const IoReport report = measure_io(request);
   progress.finish();
-  if (!options.output.empty()) plot_io(options.output, options.overwrite, request, report);
+  if (!options.out.output.empty())
+    plot_io(options.out.output, options.out.overwrite, request, report);
   if (!context.json) {
     write_to_stdout(text_of(request, report));
     return kExitDone;
   }
-  nlohmann::json answer = json_of(request, report);
-  answer["output"] = options.output.empty() ? nlohmann::json() : nlohmann::json(options.output);
-  answer["units"] = units_json(crs_facts(*StoreFile::open(request.file)));
+  ask::Json answer = json_of(request, report);
+  answer["output"] =
+      options.out.output.empty() ? nlohmann::json() : nlohmann::json(options.out.output);
+  answer["units"] = ask::units_json(crs_facts(*StoreFile::open(request.file)));
   print_json(answer);
   return kExitDone;
 }
 
 }  // namespace
 
-Action declare_bench(CLI::App& app, Context& context) {
+Declared declare_bench(Context& context) {
   const auto options = std::make_shared<BenchOptions>();
   IoRequest& request = options->request;
-  app.add_option("FILE", request.file, "The .ptin file")->required();
-  app.add_option("--seconds", request.seconds,
-                 "How long to measure, about; questions that take long may double it")
-      ->check(numbers(NumberRange::kPositive, ""))
-      ->type_name("S")
-      ->capture_default_str();
-  app.add_option("--count", request.most_times, "How often each question is asked, at most")
-      ->type_name("N")
-      ->check(CLI::Range(1U, 1000000U))
-      ->capture_default_str();
-  app.add_option("--seed", request.seed, "Of the places that are asked for")
-      ->type_name("N")
-      ->check(counts())
-      ->capture_default_str();
-  add_error_option(app, options->measures, request.tolerance,
-                   "Ask at a certified error, in the height's unit, or as 50cm (default: exact)");
-  app.add_option("--threads", options->threads,
-                 "Most threads to ask at once (default: those that the process may use)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096));
-  add_memory_option(app, options->memory);
-  app.add_option("--tmp", request.temporary_folder,
-                 "Folder for libspatialindex's tree, which is removed again (default: beside FILE)")
-      ->type_name("DIR");
-  app.add_option("-o,--output", options->output,
-                 "Draw the figures (" + known_picture_extensions() + ")")
-      ->type_name("PLOT");
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_bench(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  rows.add("file", &request.file, "", "The .ptin file")
+      .spelled("FILE")
+      .required_at(ask::Door::kBoth);
+  rows.add("seconds", &request.seconds, "S",
+           "How long to measure, about; questions that take long may double it")
+      .within(ask::kPositive)
+      .with_default();
+  rows.add("count", &request.most_times, "N", "How often each question is asked, at most")
+      .within({.least = 1, .most = 1e6})
+      .with_default();
+  rows.add("seed", &request.seed, "N", "Of the places that are asked for").with_default();
+  rows.push_back(ask::error_row(request.tolerance, "Ask at a certified error; without it exact"));
+  rows.push_back(ask::threads_row(
+      options->threads, "Most threads to ask at once (default: those that the process may use)",
+      4096));
+  rows.push_back(ask::memory_row(options->memory));
+  rows.add("tmp", &request.temporary_folder, "DIR",
+           "Folder for libspatialindex's tree, which is removed again (default: beside "
+           "FILE)");
+  add_output(rows, options->out, "Draw the figures (" + known_picture_extensions() + ")", false,
+             "PLOT");
+  declared.run = [options, &context] { return run_bench(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -17,7 +17,6 @@
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/freed_memory.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/build_cluster.h"

@@ -3,8 +3,9 @@
 
 #include <optional>
 
-#include "tools/facts/numbers.h"
-#include "tools/ptin/measures.h"
+#include <CLI/CLI.hpp>
+
+#include "tools/ptin/build_checks.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

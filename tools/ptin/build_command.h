@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "engine/construct/build.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ptin::tools {
 

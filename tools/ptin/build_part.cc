@@ -10,7 +10,6 @@
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/freed_memory.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/build_show.h"
@@ -93,24 +92,26 @@ int run_build_part(const PartCommand& command, const Context& context) {
 
 }  // namespace
 
-Action declare_build_part(CLI::App& app, Context& context) {
+Declared declare_build_part(Context& context) {
   const auto command = std::make_shared<PartCommand>();
-  app.add_option("PLAN", command->plan, "The plan that `ptin build --parts` wrote")
-      ->type_name("FILE")
-      ->required();
-  app.add_option("PHASE", command->phase, "What to do: collapse, join, tighten or publish")
-      ->check(CLI::IsMember({"collapse", "join", "tighten", "publish"}))
-      ->required();
-  app.add_option("PART", command->part, "Which part, from 0; of collapse and tighten")
-      ->check(CLI::Range(0, 1 << 20))
-      ->type_name("N");
-  app.add_option("--memory", command->memory,
-                 "Limit on the memory of this job (default: that of the plan)")
-      ->type_name("SIZE");
-  app.add_option("--threads", command->threads, "Threads of this job (default: one a processor)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
-  return [command, &context] { return run_build_part(*command, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  rows.add("plan", &command->plan, "", "The plan that `ptin build --parts` wrote")
+      .spelled("PLAN")
+      .required_at(ask::Door::kBoth);
+  rows.add("phase", &command->phase, "", "What to do: collapse, join, tighten or publish")
+      .spelled("PHASE")
+      .of({"collapse", "join", "tighten", "publish"})
+      .required_at(ask::Door::kBoth);
+  rows.add("part", &command->part, "N", "Which part, from 0; of collapse and tighten")
+      .spelled("PART")
+      .within({.least = 0, .most = 1 << 20});
+  rows.add("memory", &command->memory, "SIZE",
+           "Limit on the memory of this job (default: that of the plan)");
+  rows.push_back(
+      ask::threads_row(command->threads, "Threads of this job (default: one a processor)"));
+  declared.run = [command, &context] { return run_build_part(*command, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

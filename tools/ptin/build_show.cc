@@ -7,7 +7,6 @@
 
 #include "engine/construct/memory_plan.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/freed_memory.h"
 #include "tools/ptin/query_options.h"
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/ptin/build_show.h"
 
 namespace ptin::tools {

@@ -18,7 +18,7 @@
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/output/standard_output.h"
-#include "tools/ptin/help_text.h"
+#include "tools/ptin/command_line.h"
 #include "tools/ptin/kept_inputs.h"
 #include "tools/ptin/usage_fault.h"
 #include "tools/refused_memory.h"
@@ -36,7 +36,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build survey.txt -o survey.ptin --columns id n e z code\n"
      "  ptin build scan_*.las --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
-     declare_build},
+     nullptr},
     {"build-part", "Do one job of a build that was divided by `ptin build --parts`",
      "The phases follow each other: collapse (each part), join, tighten (each part), publish. A "
      "job\n"
@@ -245,24 +245,12 @@ std::string unknown_subcommand(std::span<const std::string> words) {
   return known ? std::string() : words[0];
 }
 
-/// Declares what holds for every subcommand; last, so that --help ends with it.
-void add_common_options(CLI::App& app, Context& context) {
-  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
-  app.add_flag("-q,--quiet", context.quiet,
-               "No progress, report or warning: on stderr errors alone");
-}
-
-/// The app that reads the options: that of the subcommand which the first word names, if it does.
-const CLI::App& app_of(const CLI::App& program, std::span<const std::string> words) {
-  const bool is_named =
-      !words.empty() && !words[0].starts_with('-') && unknown_subcommand(words).empty();
-  return is_named ? *program.get_subcommand(words[0]) : program;
-}
-
 /// Writes a sentence about wrong use, and how to get help.
 /// @returns the exit status
-int report_wrong_use(const CLI::App& app, const std::string& message, bool json) {
-  const std::string name = app.get_parent() == nullptr ? "" : app.get_name() + " ";
+int report_wrong_use(int command, const std::string& message, bool json) {
+  const std::string name =
+      command < 0 ? std::string()
+                  : kCommands.at(static_cast<std::size_t>(command)).name + std::string(" ");
   report_error({ErrorCode::invalid_argument, message + "; see ptin " + name + "--help"}, json);
   return status_of(ErrorCode::invalid_argument).exit;
 }
@@ -276,35 +264,11 @@ std::vector<std::string> words_of(int argc, const char* const* argv) {
   return words;
 }
 
-/// Parses words, which CLI11 wants from the last to the first.
-void parse(CLI::App& app, const std::vector<std::string>& words) {
-  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-}
-
 }  // namespace
 
 std::span<const Command> commands() noexcept { return kCommands; }
 
 const char* exit_statuses() noexcept { return kExitStatuses; }
-
-CommandLine make_command_line(Context& context) {
-  CommandLine line;
-  line.app = std::make_unique<CLI::App>(
-      "Progressive TINs on disk: terrains larger than memory, refined exactly where asked", "ptin");
-  line.app->set_version_flag("--version", std::string("ptin ").append(PTIN_VERSION));
-  line.app->set_help_flag("-h,--help", "Print help and exit");
-  line.app->require_subcommand(1);
-  line.app->formatter(std::make_shared<HelpText>());
-  line.app->footer(std::string("`ptin SUBCOMMAND --help` tells more and gives examples.\n\n")
-                       .append(kExitStatuses));
-  for (const Command& command : kCommands) {
-    CLI::App* sub = line.app->add_subcommand(command.name, command.summary);
-    sub->footer(command.examples);
-    line.actions.push_back(command.declare(*sub, context));
-    add_common_options(*sub, context);
-  }
-  return line;
-}
 
 int run_command_line(int argc, const char* const* argv, Context& context) {
   // Before parsing, which may fail.
@@ -312,34 +276,20 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
       std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
   const bool json = context.json;
   tell_refused_memory_as_json(json);
-  const CommandLine line = make_command_line(context);
+  CommandLine line(context);
   const std::vector<std::string> words = words_of(argc, argv);
   if (words.empty()) {
-    std::fputs(line.app->help().c_str(), stderr);
+    std::fputs(line.help().c_str(), stderr);
     return status_of(ErrorCode::invalid_argument).exit;
   }
   if (const std::string word = unknown_subcommand(words); !word.empty())
-    return report_wrong_use(*line.app, unknown_subcommand_sentence(*line.app, word), json);
-  const CLI::App& app = app_of(*line.app, words);
-  if (const std::string word = one_hyphen_too_few(app, words); !word.empty())
-    return report_wrong_use(app, word + " has one hyphen; the option is -" + word, json);
-  try {
-    parse(*line.app, words);
-  } catch (const CLI::Success& success) {  // --help, --version
-    const int status = line.app->exit(success);
-    finish_stdout();
-    return status;
-  } catch (const CLI::ParseError& error) {
-    return report_wrong_use(app, usage_fault(app, words, error), json);
-  }
-  for (std::size_t i = 0; i < kCommands.size(); ++i) {
-    if (!line.app->got_subcommand(kCommands[i].name)) continue;
-    check_inputs_are_kept(*line.app->get_subcommand(kCommands[i].name));
-    const int status = line.actions[i]();
-    finish_stdout();
-    return status;
-  }
-  return status_of(ErrorCode::internal).exit;
+    return report_wrong_use(-1, unknown_subcommand_sentence(word), json);
+  const CommandLine::Parsed parsed = line.parse(words);
+  if (!parsed.fault.empty()) return report_wrong_use(parsed.command, parsed.fault, json);
+  if (!parsed.status) check_inputs_are_kept(line.options_of(parsed.command));
+  const int status = parsed.status ? *parsed.status : line.run(parsed.command);
+  finish_stdout();
+  return status;
 }
 
 int report_current_error(bool json) noexcept {

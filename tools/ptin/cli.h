@@ -3,19 +3,10 @@
 // The command line: parsing, help, and errors as text or JSON.
 #pragma once
 
-#include <memory>
-
 #include "engine/error.h"
 #include "tools/ptin/command.h"
 
 namespace ptin::tools {
-
-/// The parser of the whole program, and the action of the subcommand that it found.
-struct CommandLine {
-  std::unique_ptr<CLI::App> app;
-  std::vector<Action> actions;  ///< actions[i] runs commands()[i].
-};
-[[nodiscard]] CommandLine make_command_line(Context& context);
 
 /// Every exit status in one sentence.
 [[nodiscard]] const char* exit_statuses() noexcept;

@@ -10,7 +10,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "tools/ask/parameter.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ptin::tools {
 
@@ -25,42 +29,50 @@ struct Context {
   std::stop_token stop;                ///< Fires on SIGINT and SIGTERM.
   bool json = false;   ///< --json: the answer on stdout and an error on stderr as JSON.
   bool quiet = false;  ///< -q: no progress, report or warning; what was asked for is printed.
+  /// The values of the options, some of which wait for the terrain's units.
+  std::shared_ptr<ask::Reading> reading = std::make_shared<ask::Reading>(ask::Door::kProgram);
 };
 
 /// Runs a parsed subcommand; returns the exit status.  @throws Error
 using Action = std::function<int()>;
 
+/// What a subcommand takes, but for the options of Context, which every subcommand has, and what it
+/// does with it. The rows point into what `run` holds.
+struct Declared {
+  ask::Parameters parameters;
+  Action run;
+};
+
 struct Command {
   const char* name;
   const char* summary;   ///< One line.
   const char* examples;  ///< Ends --help.
-  /// Declares options on `app`, but for those of Context, which every subcommand has, and returns
-  /// what to run after parsing. `context` outlives both.
-  Action (*declare)(CLI::App& app, Context& context);
+  /// `context` outlives what is declared. Null for `build`, which declares its options by itself.
+  Declared (*declare)(Context& context);
 };
 
 /// Every subcommand, in the order of --help. From it come parsing, help and completion.
 [[nodiscard]] std::span<const Command> commands() noexcept;
 
 Action declare_build(CLI::App& app, Context& context);
-Action declare_build_part(CLI::App& app, Context& context);
-Action declare_info(CLI::App& app, Context& context);
-Action declare_verify(CLI::App& app, Context& context);
-Action declare_refine(CLI::App& app, Context& context);
-Action declare_export(CLI::App& app, Context& context);
-Action declare_stream(CLI::App& app, Context& context);
-Action declare_unstream(CLI::App& app, Context& context);
-Action declare_viewer(CLI::App& app, Context& context);
-Action declare_locate(CLI::App& app, Context& context);
-Action declare_profile(CLI::App& app, Context& context);
-Action declare_sight(CLI::App& app, Context& context);
-Action declare_render(CLI::App& app, Context& context);
-Action declare_isoline(CLI::App& app, Context& context);
-Action declare_highest(CLI::App& app, Context& context);
-Action declare_volume(CLI::App& app, Context& context);
-Action declare_viewshed(CLI::App& app, Context& context);
-Action declare_bench(CLI::App& app, Context& context);
-Action declare_serve(CLI::App& app, Context& context);
-Action declare_completion(CLI::App& app, Context& context);
+Declared declare_build_part(Context& context);
+Declared declare_info(Context& context);
+Declared declare_verify(Context& context);
+Declared declare_refine(Context& context);
+Declared declare_export(Context& context);
+Declared declare_stream(Context& context);
+Declared declare_unstream(Context& context);
+Declared declare_viewer(Context& context);
+Declared declare_locate(Context& context);
+Declared declare_profile(Context& context);
+Declared declare_sight(Context& context);
+Declared declare_render(Context& context);
+Declared declare_isoline(Context& context);
+Declared declare_highest(Context& context);
+Declared declare_volume(Context& context);
+Declared declare_viewshed(Context& context);
+Declared declare_bench(Context& context);
+Declared declare_serve(Context& context);
+Declared declare_completion(Context& context);
 
 }  // namespace ptin::tools

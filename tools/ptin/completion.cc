@@ -5,32 +5,26 @@
 
 #include "tools/error_status.h"
 #include "tools/output/standard_output.h"
-#include "tools/ptin/cli.h"
+#include "tools/ptin/command_line.h"
 #include "tools/ptin/man_page.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
 
-namespace {
-
-std::string options_of(const CLI::App& app) {
-  std::string words;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) words.append(" --").append(name);
-    for (const std::string& name : option->get_snames()) words.append(" -").append(name);
-  }
-  return words;
-}
-
-std::string bash_script() {
+std::string bash_script(std::span<const Command> all) {
   Context context;
-  const CommandLine line = make_command_line(context);
+  const CommandLine line(context, all);
+  int number = 0;
   std::string names;
   std::string cases;
-  for (const Command& command : commands()) {
+  for (const Command& command : all) {
     names.append(names.empty() ? "" : " ").append(command.name);
     cases.append("    ").append(command.name).append(") words=\"");
-    cases.append(options_of(*line.app->get_subcommand(command.name))).append("\" ;;\n");
+    for (const OptionFacts& option : line.options_of(number++)) {
+      if (option.is_argument) continue;
+      for (const std::string& name : option.names) cases.append(" ").append(name);
+    }
+    cases.append("\" ;;\n");
   }
   std::string script = "# bash completion for ptin; made by `ptin completion bash`\n_ptin() {\n";
   script.append("  local current=${COMP_WORDS[COMP_CWORD]} words=\n");
@@ -48,18 +42,19 @@ std::string bash_script() {
   return script;
 }
 
-}  // namespace
-
-Action declare_completion(CLI::App& app, Context& context) {
+Declared declare_completion(Context& context) {
   const auto shell = std::make_shared<std::string>();
-  app.add_option("SHELL", *shell, "bash; or man for the manual page")
-      ->required()
-      ->check(CLI::IsMember({"bash", "man"}));
-  return [shell, &context] {
+  Declared declared;
+  declared.parameters.add("shell", shell.get(), "", "bash; or man for the manual page")
+      .spelled("SHELL")
+      .of({"bash", "man"})
+      .required_at(ask::Door::kBoth);
+  declared.run = [shell, &context] {
     const std::string text = *shell == "man" ? man_page() : bash_script();
     context.json ? print_json({{"text", text}}) : write_to_stdout(text);
     return kExitDone;
   };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -32,17 +32,16 @@ namespace {
 
 struct ExportOptions {
   TerrainOptions terrain;
-  RegionOptions region;
-  DetailOptions detail;
+  ask::RegionText region;
+  DetailRequest detail;
   ModelOptions model;
   std::vector<std::string> pixel_size;
   PixelContentOptions content;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
   std::string format;
-  std::string memory;
-  std::string output;
-  bool overwrite = false;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
 };
 
 /// A format: one that writes triangles into a sink, or a raster.
@@ -81,7 +80,7 @@ std::string known_extensions() {
 }
 
 const ExportFormat& format_of(const ExportOptions& options) {
-  const std::string extension = lower_extension(options.output);
+  const std::string extension = lower_extension(options.out.output);
   for (const ExportFormat& format : kFormats) {
     if (options.format.empty() ? (!extension.empty() && (extension == format.extension ||
                                                          (extension == ".tiff" &&
@@ -100,12 +99,12 @@ const ExportFormat& format_of(const ExportOptions& options) {
         "a GLB is written from a whole mesh, which `ptin refine` does; export writes meshes "
         "of any size, as " +
             known_extensions(),
-        options.output);
+        options.out.output);
   }
   throw Error(
       ErrorCode::invalid_argument,
       "the extension names no format; known are " + known_extensions() + ", or give --format",
-      options.output);
+      options.out.output);
 }
 
 /// The shares of --memory, in bytes. The rest is for the program itself and the allocator's slack.
@@ -121,8 +120,7 @@ struct ExportMemory {
 ExportMemory memory_of(const ExportOptions& options) {
   constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
   const std::uint64_t bytes = memory_limit_of(options.memory, std::uint64_t{1} << 30);
-  if (bytes < kLeast)
-    throw Error(ErrorCode::invalid_argument, "--memory must be at least 32M", options.memory);
+  if (bytes < kLeast) refuse("must be at least 32M", "--memory");
   return ExportMemory(bytes);
 }
 
@@ -139,7 +137,7 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
   if (!is_raster &&
       (!options.pixel_size.empty() || options.nodata || !options.creation_options.empty())) {
     throw Error(ErrorCode::invalid_argument,
-                "--pixel-size, --nodata and --co are for rasters (.tif)", options.output);
+                "--pixel-size, --nodata and --co are for rasters (.tif)", options.out.output);
   }
   const PixelContent content = content_of(options, format);
   if (options.nodata && content.value != PixelValue::kHeight) {
@@ -151,13 +149,13 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
     throw Error(ErrorCode::invalid_argument,
                 "a raster has a --window; cut it by a polygon with gdalwarp -cutline");
   }
-  if (format.make_sink == make_flatgeobuf_sink && lower_extension(options.output) != ".fgb") {
+  if (format.make_sink == make_flatgeobuf_sink && lower_extension(options.out.output) != ".fgb") {
     throw Error(ErrorCode::invalid_argument,
                 "GDAL makes a folder of a FlatGeobuf whose name does not end in .fgb; name it so",
-                options.output);
+                options.out.output);
   }
-  check_model(options.model, options.output);
-  check_output(options.output, options.overwrite);
+  check_model(options.model, options.out.output);
+  check_output(options.out.output, options.out.overwrite);
 }
 
 /// The sum of two bounds, rounded up.
@@ -216,7 +214,7 @@ std::optional<ClassChanges> changes_of(const TinParts& parts, const ExportOption
   const StoreFile& store = parts.terrain().store();
   ClassChangesRequest request;
   request.region = region;
-  request.detail = detail_of(options.detail);
+  request.detail = options.detail;
   request.reach = border_reach(store, parts.detail().certificate().error);
   request.limits = parts.request().limits;
   if (!std::isfinite(request.reach[0]) || !std::isfinite(request.reach[1])) return std::nullopt;
@@ -232,7 +230,7 @@ PartRequest request_of(const ExportOptions& options, const ExportFormat& format,
                        const std::optional<Region>& region, const Context& context) {
   PartRequest request;
   if (format.make_sink != nullptr) request.region = region;
-  request.detail = detail_of(options.detail);
+  request.detail = options.detail;
   request.limits.memory_bytes = memory_of(options).part;
   request.limits.stop = context.stop;
   return request;
@@ -244,10 +242,16 @@ SinkTarget sink_target(const ExportFormat& format, const ExportOptions& options,
   const CrsFacts crs = crs_facts(store);
   const ExportMemory memory = memory_of(options);
   LocalFrame frame = frame_of(store.facts(), crs);
-  apply_model(options.model, options.output, frame.scale);
-  return {options.output, options.overwrite,  crs,
-          frame,          options.model.base, content_of(options, format).in_percent,
-          memory.buffers, memory.index,       parts.triangles()};
+  apply_model(options.model, options.out.output, frame.scale);
+  return {options.out.output,
+          options.out.overwrite,
+          crs,
+          frame,
+          options.model.base,
+          content_of(options, format).in_percent,
+          memory.buffers,
+          memory.index,
+          parts.triangles()};
 }
 
 void warn_of_triangles(const Exported& made, const ExportFormat& format, const SinkTarget& target) {
@@ -267,8 +271,8 @@ RasterTarget raster_target(const ExportFormat& format, const ExportOptions& opti
                            const StoreFile& store) {
   const ExportMemory memory = memory_of(options);
   const PixelContent content = content_of(options, format);
-  return {options.output,
-          options.overwrite,
+  return {options.out.output,
+          options.out.overwrite,
           format.is_cog,
           content,
           options.nodata.value_or(default_nodata(store.facts(), content.value)),
@@ -282,8 +286,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
                    const Context& context) {
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
-  const AskedRegion asked = region_of(options.region, store.facts(), crs);
-  tell_transformed(asked.transformed, "the polygon", crs, context);
+  const AskedRegion asked = region_of(options.region, store.facts(), crs, context);
   const bool is_raster = format.make_sink == nullptr;
   std::optional<PixelGrid> grid;
   if (is_raster) grid.emplace(grid_of(options, asked.region, store, crs));
@@ -305,7 +308,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
       std::fprintf(stderr,
                    "ptin: warning: no pixel's centre lies on surface; %s has nodata alone, so ask "
                    "for another --window\n",
-                   options.output.c_str());
+                   options.out.output.c_str());
     }
   } else {
     const SinkTarget target = sink_target(format, options, parts);
@@ -314,7 +317,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
     if (!context.quiet) warn_of_triangles(made, format, target);
     if (format.make_sink == make_stl_sink) made.frame = target.frame;
   }
-  made.output = options.output;
+  made.output = options.out.output;
   made.format = format.name;
   made.transformed = asked.transformed;
   made.is_raster = is_raster;
@@ -324,7 +327,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   made.certificate = parts.detail().certificate();
   made.certificate.error = sum_above(made.certificate.error, made.rounding);
   made.certificate.deviation = sum_above(made.certificate.deviation, made.rounding);
-  made.bytes = bytes_of_file(options.output);
+  made.bytes = bytes_of_file(options.out.output);
   made.lone_samples = lone_samples;
   return made;
 }
@@ -334,7 +337,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.tolerance, context);
   Exported made = export_as(format, options, terrain, context);
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (context.json) {
@@ -347,39 +350,35 @@ int run_export(const ExportOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_export(CLI::App& app, Context& context) {
+Declared declare_export(Context& context) {
   const auto options = std::make_shared<ExportOptions>();
-  add_terrain_options(app, options->terrain, false);
-  add_region_options(app, options->region);
-  app.remove_option(app.get_option("--point"));
-  add_detail_options(app, options->terrain.measures, options->detail, " (default: the full TIN)",
-                     "The TIN of the terrain's N most important vertices");
-  app.add_option("-o,--output", options->output,
-                 "The file to write; its extension chooses the format: " + known_extensions())
-      ->type_name("OUT")
-      ->required();
-  app.add_option("--format,--of", options->format,
-                 "The format: " + known_formats() + " (default: by the extension)")
-      ->type_name("NAME");
-  app.add_option("--pixel-size", options->pixel_size,
-                 "Rasters: the size of a pixel, one number or two, in map units, or over ground as "
-                 "90m, 0.1km or 300ft, converted at the middle of the window (default: the source "
-                 "raster's)")
-      ->expected(1, 2)
-      ->type_name("SIZE");
-  add_pixel_content_options(app, options->content);
-  add_model_options(app, options->terrain.measures, options->model);
-  app.add_option("--nodata", options->nodata,
-                 "Rasters of heights: the value where there is no surface (default -9999)")
-      ->type_name("V");
-  app.add_option("--co", options->creation_options,
-                 "Rasters: a creation option of GDAL's driver; may be given several times")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--memory", options->memory, "Memory to work in, as 512M or 2G (default 1G)")
-      ->type_name("SIZE");
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_export(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, false);
+  ask::add_region(rows, options->region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
+  ask::add_detail(rows, options->detail, "; without it the full TIN",
+                  "The TIN of the terrain's N most important vertices");
+  add_output(rows, options->out,
+             "The file to write; its extension chooses the format: " + known_extensions());
+  rows.add("format", &options->format, "NAME",
+           "The format: " + known_formats() + " (default: by the extension)")
+      .spelled("--format,--of");
+  rows.add("pixel-size", &options->pixel_size, "SIZE",
+           "Rasters: the size of a pixel, one number or two, in map units, or over "
+           "ground as 90m, 0.1km or 300ft, converted at the middle of the window "
+           "(default: the source raster's)")
+      .values(1, 2);
+  add_pixel_content(rows, options->content);
+  add_model(rows, options->model);
+  rows.add("nodata", &options->nodata, "V",
+           "Rasters of heights: the value where there is no surface (default -9999)")
+      .within(ask::kAnyNumber);
+  rows.add("co", &options->creation_options, "KEY=VALUE",
+           "Rasters: a creation option of GDAL's driver; may be given several times")
+      .repeated();
+  rows.push_back(ask::memory_row(options->memory, "Memory to work in, as 512M or 2G (default 1G)"));
+  declared.run = [options, &context] { return run_export(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

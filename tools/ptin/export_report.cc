@@ -43,22 +43,22 @@ std::string certainty_text(const Exported& made, const std::string& left_out) {
 
 }  // namespace
 
-nlohmann::json json_of(const Exported& made, const StoreFile& store) {
+ask::Json json_of(const Exported& made, const StoreFile& store) {
   const Certificate& certificate = made.certificate;
-  nlohmann::json answer = {
+  const CrsFacts crs = crs_facts(store);
+  ask::AnswerFacts facts = ask::facts_of(
+      certificate, certificate.complete && store.facts().base_error == 0 && made.rounding == 0,
+      store, crs);
+  facts.transformed = &made.transformed;
+  ask::Json answer = {
       {"output", made.output},
       {"format", made.format},
-      {"certified_error", certificate.error},
-      {"certified_deviation", certificate.deviation},
-      {"border_moved_at_most", border_move_json(store, certificate.error)},
-      {"samples_made_void", made.changes ? nlohmann::json(made.changes->to_void) : nullptr},
-      {"samples_made_surface", made.changes ? nlohmann::json(made.changes->to_surface) : nullptr},
+      {"samples_made_void", made.changes ? ask::Json(made.changes->to_void) : nullptr},
+      {"samples_made_surface", made.changes ? ask::Json(made.changes->to_surface) : nullptr},
       {"lone_samples", made.lone_samples},
-      {"exact", certificate.complete && store.facts().base_error == 0 && made.rounding == 0},
-      {"transformed", transformed_json(made.transformed)},
-      {"units", units_json(crs_facts(store))},
       {"bytes", made.bytes},
       {"seconds", made.seconds}};
+  put(answer, facts, ask::Door::kProgram);
   if (made.is_raster) {
     answer["width"] = made.columns;
     answer["height"] = made.rows;

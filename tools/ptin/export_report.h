@@ -8,9 +8,8 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/query/terrain.h"
+#include "tools/ask/long_text.h"
 #include "tools/formats/mesh.h"
 #include "tools/region/straight_sides.h"
 
@@ -37,7 +36,7 @@ struct Exported {
 };
 
 /// For `--json`. The certificate speaks of heights, so other pixels have none.
-[[nodiscard]] nlohmann::json json_of(const Exported& made, const StoreFile& store);
+[[nodiscard]] ask::Json json_of(const Exported& made, const StoreFile& store);
 
 /// Prints it for people.
 void print_exported(const Exported& made, const StoreFacts& facts);

@@ -3,23 +3,18 @@
 // The look of --help: no line is longer than a terminal of 100 columns.
 #pragma once
 
+#include <cstddef>
 #include <string>
-
-#include <CLI/CLI.hpp>
 
 namespace ptin::tools {
 
-/// CLI11's help with its long lines broken between words. Lines of a footer that begin with a blank
-/// are examples, and stay as they are.
-class HelpText : public CLI::Formatter {
- public:
-  static constexpr std::size_t kColumns = 100;
+inline constexpr std::size_t kHelpColumns = 100;
 
-  [[nodiscard]] std::string make_option(const CLI::Option* option,
-                                        bool is_positional) const override;
-  [[nodiscard]] std::string make_subcommand(const CLI::App* app) const override;
-  [[nodiscard]] std::string make_description(const CLI::App* app) const override;
-  [[nodiscard]] std::string make_footer(const CLI::App* app) const override;
-};
+/// A name on the left, and what it is on the right, from a column on.
+[[nodiscard]] std::string in_two_columns(const std::string& name, const std::string& text,
+                                         std::size_t column);
+/// Paragraphs with their lines broken anew. A line that begins with a blank is an example, and stays
+/// as it is.
+[[nodiscard]] std::string reflowed(const std::string& text);
 
 }  // namespace ptin::tools

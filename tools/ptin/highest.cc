@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin highest: the highest or the lowest point of a window or a polygon.
+#include "tools/ask/highest.h"
+
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
@@ -17,14 +20,11 @@ namespace {
 
 struct HighestOptions {
   TerrainOptions terrain;
-  RegionOptions region;
-  DetailOptions detail;
-  bool lowest = false;
-  std::uint32_t listed = 1;
-  std::string memory;
+  ask::HighestQuestion question;
+  std::optional<std::uint64_t> memory;
 };
 
-nlohmann::json position_json(const HeightAt& p) {
+ask::Json position_json(const HeightAt& p) {
   return {{"x", p.position.x}, {"y", p.position.y}, {"height", p.height}};
 }
 
@@ -37,10 +37,10 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
     return exact_number(v.height) + " at " + exact_number(v.position.x) + " " +
            exact_number(v.position.y);
   };
-  const char* border =
-      options.region.polygon.empty() ? "on the window's border" : "on the polygon's border";
-  std::printf("%s %s (%s)\n", options.lowest ? "lowest" : "highest", text(result.point).c_str(),
-              result.at_vertex ? "a vertex" : border);
+  const char* border = options.question.region.polygon.empty() ? "on the window's border"
+                                                               : "on the polygon's border";
+  std::printf("%s %s (%s)\n", options.question.request.lowest ? "lowest" : "highest",
+              text(result.point).c_str(), result.at_vertex ? "a vertex" : border);
   if (!result.exact) {
     std::printf("  the source's lies between %s and %s%s\n",
                 exact_number(result.height_min).c_str(), exact_number(result.height_max).c_str(),
@@ -51,33 +51,22 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 
 int run_highest(const HighestOptions& options, const Context& context) {
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
-  tell_transformed(asked.transformed, "the polygon", crs, context);
-  HighestRequest request;
+  const AskedRegion asked =
+      region_of(options.question.region, terrain.store().facts(), crs, context);
+  HighestRequest request = options.question.request;
   request.region = asked.region;
-  request.lowest = options.lowest;
-  request.listed = options.listed;
-  request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
   const HighestResult result = terrain.highest(request);
   if (!context.json) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
-  nlohmann::json answer = {
-      {"state", name_of(result.state)},
-      {"lowest", options.lowest},
-      {"point", nullptr},
-      {"vertices", nlohmann::json::array()},
-      {"certified_error", result.certified_error},
-      {"certified_deviation", result.certified_deviation},
-      {"border_moved_at_most", border_move_json(terrain.store(), result.certified_error)},
-      {"exact", result.exact},
-      {"transformed", transformed_json(asked.transformed)},
-      {"units", units_json(crs)},
-      {"cost", cost_json(result.cost)}};
+  ask::Json answer = {{"state", name_of(result.state)},
+                      {"lowest", options.question.request.lowest},
+                      {"point", nullptr},
+                      {"vertices", ask::Json::array()}};
   if (result.state == PointState::kSurface) {
     answer["point"] = position_json(result.point);
     answer["point"]["at_vertex"] = result.at_vertex;
@@ -85,27 +74,20 @@ int run_highest(const HighestOptions& options, const Context& context) {
     answer["point"]["height_max"] = result.height_max;
   }
   for (const HeightAt& v : result.vertices) answer["vertices"].push_back(position_json(v));
-  print_json(answer);
+  print_answer(answer, ask::facts_of(result, terrain.store(), crs, &asked.transformed));
   return kExitDone;
 }
 
 }  // namespace
 
-Action declare_highest(CLI::App& app, Context& context) {
+Declared declare_highest(Context& context) {
   const auto options = std::make_shared<HighestOptions>();
-  add_terrain_options(app, options->terrain, false);
-  add_region_options(app, options->region, RegionKinds::kWithInside);
-  app.add_flag("--lowest", options->lowest, "The lowest point instead");
-  app.add_option("-k", options->listed, "How many of the highest vertices to list")
-      ->type_name("K")
-      ->check(CLI::Range(1U, 1000000U))
-      ->capture_default_str();
-  add_detail_options(
-      app, options->terrain.measures, options->detail, "; the height comes with an interval",
-      "The highest of the TIN of the terrain's N most important vertices; its height "
-      "comes with an interval");
-  add_memory_option(app, options->memory);
-  return [options, &context] { return run_highest(*options, context); };
+  Declared declared;
+  add_terrain(declared.parameters, options->terrain, false);
+  ask::add_highest(declared.parameters, options->question);
+  declared.parameters.push_back(ask::memory_row(options->memory));
+  declared.run = [options, &context] { return run_highest(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -93,7 +93,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
   return {{"file", store.path()},
           {"bytes", store.file_bytes()},
           {"crs", crs_json(crs)},
-          {"units", units_json(crs)},
+          {"units", ask::units_json(crs)},
           {"bounds", bounds_json(facts)},
           {"grid",
            {{"origin", {facts.map.origin_x, facts.map.origin_y}},
@@ -215,15 +215,17 @@ void print_info(const StoreFile& store, const CrsFacts& crs) {
 
 }  // namespace
 
-Action declare_info(CLI::App& app, Context& context) {
+Declared declare_info(Context& context) {
   const auto options = std::make_shared<TerrainOptions>();
-  add_terrain_options(app, *options, false);
-  return [options, &context] {
+  Declared declared;
+  add_terrain(declared.parameters, *options, false);
+  declared.run = [options, &context] {
     const auto store = open_store(*options, context);
     const CrsFacts crs = crs_facts(*store);
     context.json ? print_json(info_json(*store, crs)) : print_info(*store, crs);
     return kExitDone;
   };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -13,10 +13,10 @@
 #include "engine/mesh/link.h"
 #include "engine/query/terrain.h"
 #include "storage/file/file_questions.h"
+#include "tools/ask/isolines.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/isoline_layer.h"
@@ -31,16 +31,12 @@ namespace {
 
 struct IsolineOptions {
   TerrainOptions terrain;
-  RegionOptions region;
-  LevelOptions levels;
-  DetailOptions detail;
+  ask::IsolineQuestion question;
   bool z = false;
   bool polygons = false;
-  std::uint64_t max_lines = IsolineRequest{}.most_lines;
   int threads = 0;
-  AnswerBy by = AnswerBy::kStars;
-  std::string memory, output;
-  bool overwrite = false;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
 };
 
 /// The terrain, and what was done to the polygon.
@@ -51,14 +47,14 @@ struct AskedTerrain {
 };
 
 void check_options(const IsolineOptions& options, const Context& context) {
-  if (!options.levels.given()) {
+  if (!options.question.levels.given()) {
     throw Error(ErrorCode::invalid_argument,
                 "the levels are given by --level H... or by --interval D; give one of them");
   }
-  static_cast<void>(isoline_format_of(options.output));
-  if (options.polygons) check_isoline_fields(options.output, "--polygons");
-  if (options.output != "-") {
-    check_output(options.output, options.overwrite);
+  static_cast<void>(isoline_format_of(options.out.output));
+  if (options.polygons) check_isoline_fields(options.out.output, "--polygons");
+  if (options.out.output != "-") {
+    check_output(options.out.output, options.out.overwrite);
   } else if (context.json) {
     throw Error(ErrorCode::invalid_argument,
                 "--json and -o - both write to stdout; give the isolines a file name");
@@ -67,34 +63,27 @@ void check_options(const IsolineOptions& options, const Context& context) {
 
 std::string folder_for_temporaries(const IsolineOptions& options) {
   if (!options.terrain.temporary_folder.empty()) return options.terrain.temporary_folder;
-  if (options.output != "-") return folder_of(options.output);
+  if (options.out.output != "-") return folder_of(options.out.output);
   return system_temporary_folder();
 }
 
 void report(const IsolineOptions& options, const Isolines& lines,
             const IsolineLayer::Written& written, const AskedTerrain& asked,
             const Context& context) {
-  const StoreFile& store = asked.terrain.store();
   if (context.json) {
-    print_json({{"output", options.output},
-                {"levels", lines.levels()},
-                {"lines", written.lines},
-                {"rings", written.rings},
-                {"points", written.points},
-                {"crossed",
-                 {{"triangles", lines.crossed.triangles},
-                  {"vertices", lines.crossed.vertices},
-                  {"segments", lines.crossed.segments}}},
-                {"tiles", lines.tiles},
-                {"certified_error", lines.certified_error},
-                {"certified_deviation", lines.certified_deviation},
-                {"border_moved_at_most", border_move_json(store, lines.certified_error)},
-                {"exact", lines.exact},
-                {"transformed", transformed_json(asked.transformed)},
-                {"units", units_json(asked.crs)},
-                {"cost", cost_json(lines.cost)}});
-  } else if (!context.quiet && options.output != "-") {
-    std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.output.c_str(),
+    print_answer({{"output", options.out.output},
+                  {"levels", lines.levels()},
+                  {"lines", written.lines},
+                  {"rings", written.rings},
+                  {"points", written.points},
+                  {"crossed",
+                   {{"triangles", lines.crossed.triangles},
+                    {"vertices", lines.crossed.vertices},
+                    {"segments", lines.crossed.segments}}},
+                  {"tiles", lines.tiles}},
+                 ask::facts_of(lines, asked.terrain.store(), asked.crs, &asked.transformed));
+  } else if (!context.quiet && options.out.output != "-") {
+    std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.out.output.c_str(),
                 counted(written.lines, "isoline").c_str(), grouped(written.rings).c_str(),
                 counted(lines.levels().size(), "level").c_str(),
                 counted(written.points, "point").c_str(),
@@ -105,9 +94,10 @@ void report(const IsolineOptions& options, const Isolines& lines,
 int run_lines(const IsolineOptions& options, const IsolineRequest& request,
               const AskedTerrain& asked, const Context& context) {
   const Isolines lines = asked.terrain.isolines(request);
-  const IndexLevels index{options.levels.interval.value_or(0.0), options.levels.base};
-  IsolineLayer layer(
-      {options.output, options.overwrite, options.z, false, asked.crs, index, context.stop});
+  const IndexLevels index{options.question.levels.interval.value_or(0.0),
+                          options.question.levels.base};
+  IsolineLayer layer({options.out.output, options.out.overwrite, options.z, false, asked.crs, index,
+                      context.stop});
   const IsolineLayer::Written written = layer.add(lines);
   layer.publish();
   if (written.lines == 0 && !context.quiet) {
@@ -183,7 +173,7 @@ std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
 std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelSet& levels,
                           const StoreFacts& facts, const IsolineOptions& options,
                           const std::string& wkt) {
-  VectorFile file(options.output, options.overwrite,
+  VectorFile file(options.out.output, options.out.overwrite,
                   {"contour",
                    wkbMultiPolygon,
                    {{"ID", VectorFile::FieldType::kInteger},
@@ -233,20 +223,13 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs.wkt);
   if (context.json) {
-    print_json(
-        {{"output", options.output},
-         {"levels", levels.heights()},
-         {"features", features},
-         {"polygons", polygons.size()},
-         {"certified_error", refined.certified_error},
-         {"certified_deviation", refined.certified_deviation},
-         {"border_moved_at_most", border_move_json(terrain.store(), refined.certified_error)},
-         {"exact", refined.exact},
-         {"transformed", transformed_json(asked.transformed)},
-         {"units", units_json(asked.crs)},
-         {"cost", cost_json(refined.cost)}});
-  } else if (!context.quiet && options.output != "-") {
-    std::printf("%s: %s of %s\n", options.output.c_str(), counted(features, "band").c_str(),
+    print_answer({{"output", options.out.output},
+                  {"levels", levels.heights()},
+                  {"features", features},
+                  {"polygons", polygons.size()}},
+                 ask::facts_of(refined, terrain.store(), asked.crs, &asked.transformed));
+  } else if (!context.quiet && options.out.output != "-") {
+    std::printf("%s: %s of %s\n", options.out.output.c_str(), counted(features, "band").c_str(),
                 counted(polygons.size(), "polygon").c_str());
   }
   return kExitDone;
@@ -255,20 +238,17 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  IsolineRequest request;
-  request.levels = levels_of(options.levels, terrain.store().facts());
-  const AskedRegion region = region_of(options.region, terrain.store().facts(), crs);
-  tell_transformed(region.transformed, "the polygon", crs, context);
+  IsolineRequest request = options.question.request;
+  request.levels = ask::levels_of(options.question.levels, terrain.store().facts());
+  const AskedRegion region =
+      region_of(options.question.region, terrain.store().facts(), crs, context);
   request.region = region.region;
-  request.detail = detail_of(options.detail);
-  request.most_lines = options.max_lines;
   request.limits.memory_bytes = memory_limit_of(options.memory, request.limits.memory_bytes);
   request.temporary_folder = folder_for_temporaries(options);
   request.threads = thread_count(options.threads);
   request.limits.stop = context.stop;
-  request.by = options.by;
   request.counts_vertices = context.json;
   const AskedTerrain asked{terrain, crs, region.transformed};
   return options.polygons ? run_polygons(options, request, asked, context)
@@ -277,44 +257,31 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_isoline(CLI::App& app, Context& context) {
+Declared declare_isoline(Context& context) {
   const auto options = std::make_shared<IsolineOptions>();
-  add_terrain_options(app, options->terrain, true);
-  app.get_option("--tmp")->description(
-      "Folder for temporary files: lines that do not fit in --memory (default: OUT's folder), "
-      "--index spatialindex (default: beside FILE)");
-  add_level_options(app, options->terrain.measures, options->levels,
-                    "Heights, in the height's unit", "Every multiple of D, from the base");
-  add_region_options(app, options->region, RegionKinds::kWithInside);
-  add_detail_options(app, options->terrain.measures, options->detail, "",
-                     "The isolines of the TIN of the terrain's N most important vertices");
-  auto* z = app.add_flag("--3d", options->z, "Points carry the height of their line");
-  app.add_flag("-p,--polygons", options->polygons,
-               "Polygons between the levels, with elev_min and elev_max, instead of lines")
-      ->excludes(z);
-  app.add_option("-o,--output", options->output,
-                 "The layer to write; its extension chooses the format: " +
-                     known_isoline_extensions() + "; - is GeoJSON on stdout")
-      ->type_name("OUT")
-      ->required();
-  add_by_option(app, options->by);
-  app.add_option("--max-lines", options->max_lines,
-                 "Refuse, before anything is written, when there are more lines, or polygons")
-      ->type_name("N")
-      ->check(counts())
-      ->capture_default_str();
-  app.add_option("--memory", options->memory,
-                 "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to "
-                 "--tmp")
-      ->type_name("SIZE");
-  app.add_option(
-         "--threads", options->threads,
-         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
-         "the lines are the same for any number")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_isoline(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, true,
+              "Folder for temporary files: lines that do not fit in --memory (default: OUT's "
+              "folder), --index spatialindex (default: beside FILE)");
+  ask::add_isolines(rows, options->question);
+  rows.add("3d", &options->z, "", "Points carry the height of their line");
+  rows.add("polygons", &options->polygons, "",
+           "Polygons between the levels, with elev_min and elev_max, instead of "
+           "lines")
+      .spelled("-p,--polygons")
+      .excluding("3d");
+  add_output(rows, options->out,
+             "The layer to write; its extension chooses the format: " + known_isoline_extensions() +
+                 "; - is GeoJSON on stdout");
+  rows.push_back(ask::memory_row(options->memory,
+                                 "Memory for the extraction, as 512M or 2G (default 4G); what does "
+                                 "not fit goes to --tmp"));
+  rows.push_back(ask::threads_row(options->threads,
+                                  "Threads (default: one a processor that affinity and cgroups "
+                                  "leave this process); the lines are the same for any number"));
+  declared.run = [options, &context] { return run_isoline(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/kept_inputs.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -65,15 +66,17 @@ void check_input(const std::string& input, const std::string& output,
 
 }  // namespace
 
-void check_inputs_are_kept(const CLI::App& command) {
-  const CLI::Option* const output = command.get_option_no_throw("--output");
-  if (output == nullptr || output->count() == 0) return;
-  const std::string path = output->as<std::string>();
+void check_inputs_are_kept(std::span<const OptionFacts> options) {
+  const auto output = std::find_if(options.begin(), options.end(), [](const OptionFacts& option) {
+    return option.name() == "--output" && !option.given.empty();
+  });
+  if (output == options.end()) return;
+  const std::string path = output->given.back();
   const std::optional<FileIdentity> identity = path == "-" ? std::nullopt : identity_of(path);
   if (!identity) return;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option == output) continue;
-    for (const std::string& value : option->results()) {
+  for (const OptionFacts& option : options) {
+    if (&option == &*output) continue;
+    for (const std::string& value : option.given) {
       if (is_number(value)) continue;
       check_input(value, path, *identity);
       for (const std::string& file : files_behind(value)) check_input(file, path, *identity);

@@ -3,7 +3,9 @@
 // An output never takes the place of what it is made from.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <span>
+
+#include "tools/ptin/command_line.h"
 
 namespace ptin::tools {
 
@@ -13,6 +15,6 @@ namespace ptin::tools {
 /// names a file and is no number: so no option that takes an input can be forgotten here.
 /// @throws Error invalid_argument  the output is one of these files
 /// Cost: a look at each argument.
-void check_inputs_are_kept(const CLI::App& command);
+void check_inputs_are_kept(std::span<const OptionFacts> options);
 
 }  // namespace ptin::tools

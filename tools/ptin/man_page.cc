@@ -2,6 +2,7 @@
 #include "tools/ptin/man_page.h"
 
 #include "tools/ptin/cli.h"
+#include "tools/ptin/command_line.h"
 
 namespace ptin::tools {
 
@@ -34,22 +35,14 @@ std::string on_one_line(std::string text) {
   return text;
 }
 
-std::string names_of(const CLI::Option& option) {
+void add_option(const OptionFacts& option, std::string& page) {
   std::string names;
-  for (const std::string& name : option.get_snames())
-    names.append(names.empty() ? "-" : ", -").append(name);
-  for (const std::string& name : option.get_lnames())
-    names.append(names.empty() ? "--" : ", --").append(name);
-  return names.empty() ? option.get_name(true) : names;
-}
-
-void add_option(const CLI::Option& option, std::string& page) {
-  page.append(".TP\n.B ").append(escaped(names_of(option)));
-  const bool is_positional = option.get_snames().empty() && option.get_lnames().empty();
-  const std::string type =
-      option.get_type_size() == 0 || is_positional ? "" : option.get_type_name();
-  if (!type.empty()) page.append(" \\fI").append(escaped(type)).append("\\fR");
-  page.append("\n").append(escaped(on_one_line(option.get_description()))).append("\n");
+  for (const std::string& name : option.names) names += (names.empty() ? "" : ", ") + name;
+  page.append(".TP\n.B ").append(escaped(names));
+  if (!option.metavar.empty() && !option.is_argument) {
+    page.append(" \\fI").append(escaped(option.metavar)).append("\\fR");
+  }
+  page.append("\n").append(escaped(on_one_line(option.help))).append("\n");
 }
 
 /// Adds the footer of a subcommand: paragraphs, then examples line by line.
@@ -65,24 +58,24 @@ void add_footer(const std::string& footer, std::string& page) {
 
 }  // namespace
 
-std::string man_page() {
+std::string man_page(std::span<const Command> all) {
   Context context;
-  const CommandLine line = make_command_line(context);
+  const CommandLine line(context, all);
   std::string page = ".TH PTIN 1 \"\" \"ptin " PTIN_VERSION "\" \"User Commands\"\n";
-  page.append(".SH NAME\nptin \\- ").append(escaped(line.app->get_description())).append("\n");
+  page.append(".SH NAME\nptin \\- ").append(escaped(program_summary())).append("\n");
   page.append(".SH SYNOPSIS\n.B ptin\n\\fISUBCOMMAND\\fR [\\fIOPTION\\fR...]\n");
   page.append(".SH DESCRIPTION\n");
-  for (const Command& command : commands()) {
+  for (const Command& command : all) {
     page.append(".TP\n.B ").append(escaped(command.name)).append("\n");
     page.append(escaped(command.summary)).append("\n");
   }
-  for (const Command& command : commands()) {
-    const CLI::App& app = *line.app->get_subcommand(command.name);
+  int number = 0;
+  for (const Command& command : all) {
     page.append(".SH \"PTIN ");
     for (const char* c = command.name; *c != '\0'; ++c)
       page += *c >= 'a' && *c <= 'z' ? static_cast<char>(*c - 'a' + 'A') : *c;
     page.append("\"\n").append(escaped(command.summary)).append(".\n");
-    for (const CLI::Option* option : app.get_options()) add_option(*option, page);
+    for (const OptionFacts& option : line.options_of(number++)) add_option(option, page);
     add_footer(command.examples, page);
   }
   page.append(".SH \"EXIT STATUS\"\n").append(escaped(on_one_line(exit_statuses()))).append("\n");

@@ -6,20 +6,18 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "tools/ask/parameter.h"
 #include "tools/formats/mesh.h"
-#include "tools/ptin/measures.h"
 
 namespace ptin::tools {
 
 struct ModelOptions {
   std::optional<double> base;  ///< --solid, in the height's unit.
-  std::string scale;           ///< "25000" or "1:25000"; empty: none.
+  double reduction = 0;        ///< --scale: how many times smaller it is; 0: none was asked for.
   double exaggeration = 1.0;   ///< A factor on heights.
 };
 
-void add_model_options(CLI::App& app, Measures& measures, ModelOptions& options);
+void add_model(ask::Parameters& rows, ModelOptions& options);
 /// @throws Error invalid_argument  they mean nothing, or nothing for this format
 void check_model(const ModelOptions& options, const std::string& output);
 /// Metres of the frame's coordinates become millimetres of the model in an STL, whose programs take

@@ -2,7 +2,6 @@
 #include "tools/ptin/pixel_content.h"
 
 #include <array>
-#include <cmath>
 
 #include "engine/error.h"
 
@@ -12,36 +11,25 @@ namespace {
 
 constexpr std::array<const char*, 4> kNames = {"height", "slope", "aspect", "hillshade"};
 
-/// @throws Error invalid_argument  not from `least` to `most`
-double degrees_in(double value, double least, double most, const char* option) {
-  if (value >= least && value <= most) return value;
-  throw Error(ErrorCode::invalid_argument,
-              "must be from " + std::to_string(static_cast<int>(least)) + " to " +
-                  std::to_string(static_cast<int>(most)) + " degrees",
-              option);
-}
-
 }  // namespace
 
-void add_pixel_content_options(CLI::App& app, PixelContentOptions& options) {
-  app.add_option(
-         "--what", options.what,
-         "Rasters: height, slope, aspect (degrees clockwise from north) or hillshade of the "
-         "triangle under the pixel's centre")
-      ->type_name("WHAT")
-      ->check(CLI::IsMember(std::vector<std::string>(kNames.begin(), kNames.end())))
-      ->capture_default_str();
-  app.add_option("--slope-unit", options.slope_unit,
-                 "degree or percent, of --what slope and of the field slope (default degree)")
-      ->type_name("UNIT")
-      ->check(CLI::IsMember({"degree", "percent"}));
-  app.add_option("--azimuth", options.azimuth,
-                 "Hillshades: where the light comes from, in degrees clockwise from north (default "
-                 "315)")
-      ->type_name("A");
-  app.add_option("--altitude", options.altitude,
-                 "Hillshades: how high the light stands, in degrees (default 45)")
-      ->type_name("A");
+void add_pixel_content(ask::Parameters& rows, PixelContentOptions& options) {
+  rows.add("what", &options.what, "WHAT",
+           "Rasters: height, slope, aspect (degrees clockwise from north) or hillshade "
+           "of the triangle under the pixel's centre")
+      .of({kNames.begin(), kNames.end()})
+      .with_default();
+  rows.add("slope-unit", &options.slope_unit, "UNIT",
+           "degree or percent, of --what slope and of the field slope (default "
+           "degree)")
+      .of({"degree", "percent"});
+  rows.add("azimuth", &options.azimuth, "A",
+           "Hillshades: where the light comes from, in degrees clockwise from north "
+           "(default 315)")
+      .within({.least = 0, .most = 360});
+  rows.add("altitude", &options.altitude, "A",
+           "Hillshades: how high the light stands, in degrees (default 45)")
+      .within({.least = 0, .most = 90});
 }
 
 PixelContent pixel_content_of(const PixelContentOptions& options, bool of_raster, bool has_slope) {
@@ -64,8 +52,7 @@ PixelContent pixel_content_of(const PixelContentOptions& options, bool of_raster
                 options.azimuth ? "--azimuth" : "--altitude");
   }
   content.in_percent = options.slope_unit == "percent";
-  content.light = Light(degrees_in(options.azimuth.value_or(315), 0, 360, "--azimuth"),
-                        degrees_in(options.altitude.value_or(45), 0, 90, "--altitude"));
+  content.light = Light(options.azimuth.value_or(315), options.altitude.value_or(45));
   return content;
 }
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "tools/ask/parameter.h"
 #include "tools/export/raster_export.h"
-#include "tools/ptin/command.h"
 
 namespace ptin::tools {
 
@@ -17,7 +17,7 @@ struct PixelContentOptions {
   std::optional<double> azimuth, altitude;
 };
 
-void add_pixel_content_options(CLI::App& app, PixelContentOptions& options);
+void add_pixel_content(ask::Parameters& rows, PixelContentOptions& options);
 
 /// What was asked for.
 /// @param of_raster  The output is a raster.

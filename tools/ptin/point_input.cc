@@ -206,24 +206,22 @@ void add_lines(const OGRGeometry& geometry, std::vector<std::vector<MapPoint>>& 
 
 }  // namespace
 
-void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
-                       const std::string& columns) {
+void add_input_choice(ask::Parameters& rows, InputChoice& choice, std::string_view source,
+                      const std::string& columns) {
   if (!columns.empty()) {
-    app.add_option("--columns", choice.columns,
-                   "Text: the names of its columns from the left, " + columns +
-                       " and any other name for one that is passed over")
-        ->delimiter(',')
-        ->type_name("NAME")
-        ->needs(source);
+    rows.add("columns", &choice.columns, "NAME",
+             "Text: the names of its columns from the left, " + columns +
+                 " and any other name for one that is passed over")
+        .values(1, ask::kAnyNumberOfValues)
+        .needing(source)
+        .split_at_commas();
   }
-  app.add_option("--layer", choice.layer, "The layer, where several of a file would do")
-      ->type_name("NAME")
-      ->needs(source);
-  app.add_option("--id", choice.id,
-                 "The column or attribute that goes along into the answer as `id` (default: the "
-                 "first that is no\ncoordinate)")
-      ->type_name("NAME")
-      ->needs(source);
+  rows.add("layer", &choice.layer, "NAME", "The layer, where several of a file would do")
+      .needing(source);
+  rows.add("id", &choice.id, "NAME",
+           "The column or attribute that goes along into the answer as `id` (default: "
+           "the first that is no coordinate)")
+      .needing(source);
 }
 
 Asked<MapPoint> read_points(const std::string& path, const InputChoice& choice,

@@ -20,11 +20,11 @@ struct InputChoice {
   std::string layer;                 ///< Empty: the only layer that fits.
   std::string id;  ///< Empty: the first column or attribute that is no coordinate.
 };
-/// Declares --layer and --id beside `source`, the option that names the input, and --columns where
+/// --layer and --id beside `source`, the name of the option that names the input, and --columns where
 /// an input may be text.
 /// @param columns  The names that --columns must have; empty: there is no --columns.
-void add_input_options(CLI::App& app, InputChoice& choice, CLI::Option* source,
-                       const std::string& columns);
+void add_input_choice(ask::Parameters& rows, InputChoice& choice, std::string_view source,
+                      const std::string& columns);
 
 /// What was asked for, in the order of the input.
 template <typename T>

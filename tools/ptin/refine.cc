@@ -9,7 +9,6 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/formats/solid_stream.h"
 #include "tools/output/output_file.h"
@@ -25,16 +24,14 @@ namespace {
 
 struct RefineOptions {
   TerrainOptions terrain;
-  RegionOptions region;
-  DetailOptions detail;
+  ask::RegionText region;
+  RefineRequest request;
   ModelOptions model;
-  std::optional<std::uint64_t> triangles;
   bool clip = false;
   bool cut = false;
-  std::string memory;
-  std::string output;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
   bool stats = false;
-  bool overwrite = false;
 };
 
 void check_options(const RefineOptions& options) {
@@ -46,30 +43,21 @@ void check_options(const RefineOptions& options) {
     throw Error(ErrorCode::invalid_argument,
                 "--cut needs an area; a point has none (--clip keeps its triangle)");
   }
-  static_cast<void>(mesh_format_of(options.output));
-  check_model(options.model, options.output);
-  check_output(options.output, options.overwrite);
+  static_cast<void>(mesh_format_of(options.out.output));
+  check_model(options.model, options.out.output);
+  check_output(options.out.output, options.out.overwrite);
 }
 
 /// @param mesh  As it is written.
-nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
-                         const std::optional<Transformed>& transformed, const StoreFile& store,
-                         const CrsFacts& crs) {
-  nlohmann::json answer = {
-      {"output", options.output},
+ask::Json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh) {
+  ask::Json answer = {
+      {"output", options.out.output},
       {"vertices", refined.vertices},
       {"void_vertices", refined.void_vertices},
       {"triangles", refined.triangles},
       {"t0_vertices", refined.t0_vertices},
-      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
-      {"certified_error", refined.certified_error},
-      {"certified_deviation", refined.certified_deviation},
-      {"border_moved_at_most", border_move_json(store, refined.certified_error)},
-      {"exact", refined.exact},
-      {"transformed", transformed_json(transformed)},
-      {"units", units_json(crs)},
-      {"cost", cost_json(refined.cost)}};
-  if (has_frame(options.output)) answer["local_frame"] = frame_json(mesh.frame);
+      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}}};
+  if (has_frame(options.out.output)) answer["local_frame"] = frame_json(mesh.frame);
   return answer;
 }
 
@@ -78,9 +66,10 @@ nlohmann::json answer_of(const RefineOptions& options, const RefinedTin& refined
 /// @param vertices  Of the terrain.
 std::string difference_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
                           std::uint64_t vertices) {
-  const bool by_vertices = options.detail.vertices.has_value();
-  if (!by_vertices && !options.triangles) return {};
-  const std::uint64_t asked = by_vertices ? *options.detail.vertices : *options.triangles;
+  const bool by_vertices = options.request.detail.vertices.has_value();
+  if (!by_vertices && !options.request.triangles) return {};
+  const std::uint64_t asked =
+      by_vertices ? *options.request.detail.vertices : *options.request.triangles;
   const std::uint64_t found = by_vertices ? refined.vertices : refined.triangles;
   const std::uint64_t written = by_vertices ? mesh.vertices.size() : mesh.triangles.size();
   if (written == asked) return {};
@@ -104,13 +93,14 @@ std::string difference_of(const RefineOptions& options, const RefinedTin& refine
 
 void print_written(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh,
                    const StoreFile& store) {
-  std::printf("%s: %s, %s written\n", options.output.c_str(),
+  std::printf("%s: %s, %s written\n", options.out.output.c_str(),
               counted(mesh.vertices.size(), "vertex", "vertices").c_str(),
               counted(mesh.triangles.size(), "triangle").c_str());
   const std::uint64_t vertices = store.t0().vertices.size() + store.record_count();
   const std::string difference = difference_of(options, refined, mesh, vertices);
   if (!difference.empty()) std::printf("  asked for  %s\n", difference.c_str());
-  if (has_frame(options.output)) std::printf("  frame      %s\n", frame_text(mesh.frame).c_str());
+  if (has_frame(options.out.output))
+    std::printf("  frame      %s\n", frame_text(mesh.frame).c_str());
 }
 
 void print_stats(const RefineOptions& options, const RefinedTin& refined) {
@@ -140,14 +130,11 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined) {
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
-  RefineRequest request;
-  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
-  tell_transformed(asked.transformed, "the polygon", crs, context);
+  RefineRequest request = options.request;
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs, context);
   request.region = asked.region;
-  request.detail = detail_of(options.detail);
-  request.triangles = options.triangles;
   request.form = options.clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   request.limits = limits_of(options.memory, context);
   const RefinedTin refined = terrain.refine(request);
@@ -156,17 +143,18 @@ int run_refine(const RefineOptions& options, const Context& context) {
   Mesh mesh =
       options.cut ? cut_to_region(refined, facts, *request.region) : surface_mesh(refined, facts);
   set_crs(mesh, crs, facts);
-  apply_model(options.model, options.output, mesh.frame.scale);
-  apply_model(options.model, options.output, mesh.metres_per_unit);
+  apply_model(options.model, options.out.output, mesh.frame.scale);
+  apply_model(options.model, options.out.output, mesh.metres_per_unit);
   const Mesh solid = options.model.base ? solid_of(mesh, *options.model.base) : Mesh{};
   const Mesh& written = options.model.base ? solid : mesh;
-  write_mesh(written, options.output, options.overwrite);
+  write_mesh(written, options.out.output, options.out.overwrite);
   if (mesh.triangles.empty() && !context.quiet) {
     std::fprintf(stderr, "ptin: warning: the region holds no surface; %s has no triangle\n",
-                 options.output.c_str());
+                 options.out.output.c_str());
   }
   if (context.json) {
-    print_json(answer_of(options, refined, written, asked.transformed, terrain.store(), crs));
+    print_answer(answer_of(options, refined, written),
+                 ask::facts_of(refined, terrain.store(), crs, &asked.transformed));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
     if (options.model.base) {
@@ -180,38 +168,33 @@ int run_refine(const RefineOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_refine(CLI::App& app, Context& context) {
+Declared declare_refine(Context& context) {
   const auto options = std::make_shared<RefineOptions>();
-  add_terrain_options(app, options->terrain, true);
-  add_region_options(app, options->region);
-  add_detail_options(
-      app, options->terrain.measures, options->detail, "",
-      "A mesh of exactly this many vertices, the most important ones of the region; not written\n"
-      "are those in void triangles alone, and what --clip and --cut leave out");
-  app.add_option("--triangles", options->triangles,
-                 "The mesh of the most important vertices that has at most this many triangles, "
-                 "void ones included; --clip and --cut leave some of them out")
-      ->type_name("N")
-      ->check(counts())
-      ->excludes(app.get_option("--error"))
-      ->excludes(app.get_option("--vertices"));
-  auto* clip =
-      app.add_flag("--clip", options->clip, "Keep only the triangles that meet the region, whole");
-  app.add_flag("--cut", options->cut, "Cut the triangles at the border of the region")
-      ->excludes(clip);
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, true);
+  ask::add_region(rows, options->region, ask::RegionKinds::kAll, ask::Door::kProgram);
+  ask::add_detail(
+      rows, options->request.detail, "",
+      "A mesh of exactly this many vertices, the most important ones of the region; not "
+      "written are those in void triangles alone, and what --clip and --cut leave out");
+  rows.add("triangles", &options->request.triangles, "N",
+           "The mesh of the most important vertices that has at most this many "
+           "triangles, void ones included; --clip and --cut leave some of them out")
+      .excluding("error vertices");
+  rows.add("clip", &options->clip, "", "Keep only the triangles that meet the region, whole");
+  rows.add("cut", &options->cut, "", "Cut the triangles at the border of the region")
+      .excluding("clip");
   std::string formats;
   for (const MeshFormat& format : mesh_formats()) {
     formats.append(formats.empty() ? "." : ", .").append(format.extension);
   }
-  app.add_option("-o,--output", options->output,
-                 "The mesh to write; its extension chooses the format: " + formats)
-      ->type_name("OUT")
-      ->required();
-  add_model_options(app, options->terrain.measures, options->model);
-  app.add_flag("--stats", options->stats, "Print what is certified and what it cost, too");
-  add_memory_option(app, options->memory);
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_refine(*options, context); };
+  add_output(rows, options->out, "The mesh to write; its extension chooses the format: " + formats);
+  add_model(rows, options->model);
+  rows.add("stats", &options->stats, "", "Print what is certified and what it cost, too");
+  rows.push_back(ask::memory_row(options->memory));
+  declared.run = [options, &context] { return run_refine(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -24,23 +24,23 @@ namespace {
 
 struct RenderOptions {
   TerrainOptions terrain;
-  RegionOptions region;
+  ask::RegionText region;
   std::optional<double> error;
   std::vector<int> size;
   bool wireframe = false;
   bool pages = false;
   bool no_legend = false;
-  std::string memory, output;
-  bool overwrite = false;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
 };
 
 void check_options(const RenderOptions& options) {
-  const std::string& path = options.output;
+  const std::string& path = options.out.output;
   if (!is_picture_name(path)) {
     throw Error(ErrorCode::invalid_argument,
                 "unknown extension; known are " + known_picture_extensions(), path);
   }
-  check_output(path, options.overwrite);
+  check_output(path, options.out.overwrite);
 }
 
 Window whole_window(const StoreFacts& facts) {
@@ -73,7 +73,7 @@ std::uint64_t memory_beside_picture(const RenderOptions& options, const View& vi
               "a picture of " + std::to_string(view.width) + " x " + std::to_string(view.height) +
                   " pixels takes " + human_bytes(bytes) + ", and " + human_bytes(limit) +
                   " are allowed; give a smaller --size or more --memory",
-              options.output);
+              options.out.output);
 }
 
 /// A tolerance at which the TIN has at most a few vertices a pixel: none where the full TIN has no
@@ -92,11 +92,6 @@ std::optional<double> tolerance_for(const StoreFile& store, double share, const 
 View view_of(const RenderOptions& options, const Window& window, const CrsFacts& crs) {
   const MapPoint middle{(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2};
   const bool sized = !options.size.empty();
-  if (sized && (options.size[0] < 1 || options.size[1] < 1)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the picture's sides must be from 1 to " + std::to_string(kMostPixels) + " pixels",
-                "--size");
-  }
   return make_view(window, ground_of(crs).per_map_unit(middle), sized ? options.size[0] : 0,
                    sized ? options.size[1] : 0);
 }
@@ -140,7 +135,8 @@ int run_render(const RenderOptions& options, const Context& context) {
   warn_of_terrain(terrain.store(), options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
-  const std::optional<Region> region = region_of(options.region, store.facts(), crs).region;
+  const std::optional<Region> region =
+      region_of(options.region, store.facts(), crs, context).region;
   const Window whole = whole_window(store.facts());
   const Window window = region ? std::get<Window>(*region) : whole;
   const View view = view_of(options, window, crs);
@@ -155,29 +151,22 @@ int run_render(const RenderOptions& options, const Context& context) {
   request.page_of_triangle = options.pages;
   request.limits.stop = context.stop;
   const RefinedTin refined = terrain.refine(request);
-  Canvas canvas(options.output, options.overwrite, view.width, view.height);
+  Canvas canvas(options.out.output, options.out.overwrite, view.width, view.height);
   const ReliefStyle style = draw(canvas, options, refined, store.facts(), view, context.stop);
   if (!options.no_legend) draw_legend(canvas, view, style, unit_of_ground(crs), crs.vertical_unit);
   canvas.publish();
-  if (!context.quiet) warn_of_picture(refined, store, options.output);
+  if (!context.quiet) warn_of_picture(refined, store, options.out.output);
 
-  const nlohmann::json answer = {
-      {"output", options.output},
+  const ask::Json answer = {
+      {"output", options.out.output},
       {"width", view.width},
       {"height", view.height},
-      {"tolerance",
-       request.detail.tolerance ? nlohmann::json(*request.detail.tolerance) : nlohmann::json()},
+      {"tolerance", request.detail.tolerance ? ask::Json(*request.detail.tolerance) : ask::Json()},
       {"vertices", refined.vertices},
       {"triangles", refined.triangles},
-      {"certified_error", refined.certified_error},
-      {"certified_deviation", refined.certified_deviation},
-      {"border_moved_at_most", border_move_json(terrain.store(), refined.certified_error)},
-      {"exact", refined.exact},
-      {"units", units_json(crs)},
-      {"exaggeration", style.exaggeration},
-      {"cost", cost_json(refined.cost)}};
+      {"exaggeration", style.exaggeration}};
   if (context.json) {
-    print_json(answer);
+    print_answer(answer, ask::facts_of(refined, store, crs));
   } else if (!context.quiet) {
     const std::string level = request.detail.tolerance
                                   ? "within " + short_number(refined.certified_error)
@@ -185,7 +174,7 @@ int run_render(const RenderOptions& options, const Context& context) {
     const std::string steepness = style.exaggeration == 1.0
                                       ? "as they are"
                                       : short_number(style.exaggeration) + " times as steep";
-    std::printf("%s: %d x %d pixels, %s, %s; slopes shaded %s\n", options.output.c_str(),
+    std::printf("%s: %d x %d pixels, %s, %s; slopes shaded %s\n", options.out.output.c_str(),
                 view.width, view.height, counted(refined.triangles, "triangle").c_str(),
                 level.c_str(), steepness.c_str());
   }
@@ -194,26 +183,24 @@ int run_render(const RenderOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_render(CLI::App& app, Context& context) {
+Declared declare_render(Context& context) {
   const auto options = std::make_shared<RenderOptions>();
-  add_terrain_options(app, options->terrain, false);
-  add_region_options(app, options->region, RegionKinds::kWindow);
-  add_error_option(app, options->terrain.measures, options->error,
-                   "Certified error allowed, in the height's unit, or as 50cm (default: as fine as "
-                   "the pixels can show)");
-  app.add_option("--size", options->size, "Pixels (default: the longer side has 1200)")
-      ->expected(2)
-      ->type_name("W H");
-  app.add_flag("--wireframe", options->wireframe, "Draw the triangles");
-  app.add_flag("--pages", options->pages, "Colour triangles by the page that each came from");
-  app.add_flag("--no-legend", options->no_legend, "No scale bar and no height colours");
-  app.add_option("-o,--output", options->output,
-                 "The picture to write: " + known_picture_extensions())
-      ->type_name("OUT")
-      ->required();
-  add_memory_option(app, options->memory);
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_render(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, false);
+  ask::add_region(rows, options->region, ask::RegionKinds::kWindow, ask::Door::kProgram);
+  rows.push_back(ask::error_row(
+      options->error, "Certified error allowed; without it as fine as the pixels can show"));
+  rows.add("size", &options->size, "W H", "Pixels (default: the longer side has 1200)")
+      .within({.least = 1, .most = kMostPixels})
+      .values(2, 2);
+  rows.add("wireframe", &options->wireframe, "", "Draw the triangles");
+  rows.add("pages", &options->pages, "", "Colour triangles by the page that each came from");
+  rows.add("no-legend", &options->no_legend, "", "No scale bar and no height colours");
+  add_output(rows, options->out, "The picture to write: " + known_picture_extensions());
+  rows.push_back(ask::memory_row(options->memory));
+  declared.run = [options, &context] { return run_render(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

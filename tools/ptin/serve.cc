@@ -36,10 +36,10 @@ namespace {
 
 struct ServeCommand {
   std::vector<std::string> files;
-  std::optional<std::string> listen, cors, token_file, metrics;
+  std::string listen, cors, token_file, metrics;  // Empty: not given.
   std::string config, memory;
   std::vector<std::string> limits, trusted_proxies;
-  std::optional<std::uint64_t> threads;
+  int threads = 0;  ///< 0: as many as the process may use.
   bool offers_files = false;
 };
 
@@ -68,14 +68,18 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   if (!command.config.empty()) serve::read_config(command.config, options);
   for (const std::string& file : command.files) options.files.push_back(served_file(file));
   if (options.files.empty()) refuse("no file is given: name files, or --config with [collections]");
-  if (command.listen) options.listen = *command.listen;
-  if (command.cors) options.cors_origin = serve::checked_origin(*command.cors, "--cors");
-  if (command.metrics) options.metrics = serve::metrics_for(*command.metrics, "--metrics");
+  if (!command.listen.empty()) options.listen = command.listen;
+  if (!command.cors.empty()) {
+    options.cors_origin = serve::checked_origin(command.cors, "--cors");
+  }
+  if (!command.metrics.empty()) {
+    options.metrics = serve::metrics_for(command.metrics, "--metrics");
+  }
   for (const std::string& proxy : command.trusted_proxies) {
     serve::add_trusted_proxies(proxy, options);
   }
-  if (command.token_file) options.token = serve::read_token(*command.token_file);
-  if (command.threads) options.http.threads = static_cast<std::size_t>(*command.threads);
+  if (!command.token_file.empty()) options.token = serve::read_token(command.token_file);
+  if (command.threads > 0) options.http.threads = static_cast<std::size_t>(command.threads);
   if (command.offers_files) options.offers_files = true;
   if (!command.memory.empty()) serve::set_limit(options, "memory_bytes", command.memory);
   for (const std::string& limit : command.limits) {
@@ -152,38 +156,39 @@ std::string limits_help() {
 
 }  // namespace
 
-Action declare_serve(CLI::App& app, Context& context) {
+Declared declare_serve(Context& context) {
   const auto command = std::make_shared<ServeCommand>();
-  app.add_option("FILE", command->files, "Files, each as FILE or NAME=FILE")->type_name("FILE...");
-  app.add_option("--listen", command->listen, "Where to listen; 127.0.0.1:8080 without it")
-      ->type_name("ADDRESS:PORT");
-  app.add_option("--config", command->config,
-                 "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
-                 "[collections], [limits]; options win over it")
-      ->type_name("FILE");
-  app.add_option("--threads", command->threads,
-                 "Questions of each lane (points, tiles, sweeps) that are computed at once")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  app.add_option(
-         "--memory", command->memory,
-         "Memory of all bodies, questions and answers; as much as fills all threads without it")
-      ->type_name("SIZE");
-  app.add_option("--limit", command->limits, limits_help())->type_name("NAME=VALUE");
-  app.add_option("--cors", command->cors, "Web pages of this origin may ask; * for all")
-      ->type_name("ORIGIN");
-  app.add_option("--token-file", command->token_file,
-                 "Questions need the token of its first line, as Authorization: Bearer TOKEN, or "
-                 "once as ?token=TOKEN in a browser")
-      ->type_name("FILE");
-  app.add_option("--metrics", command->metrics,
-                 "Who reads /metrics: open, token, closed; without it whoever may ask questions")
-      ->type_name("WHO");
-  app.add_option("--trusted-proxy", command->trusted_proxies,
-                 "A proxy that is believed its X-Forwarded-For and -Proto; may be given often")
-      ->type_name("ADDRESS[/BITS]");
-  app.add_flag("--files", command->offers_files, "Give out the files themselves, by ranges");
-  return [command, &context] { return run_serve(*command, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  rows.add("file", &command->files, "FILE...", "Files, each as FILE or NAME=FILE")
+      .spelled("FILE")
+      .values(1, ask::kAnyNumberOfValues);
+  rows.add("listen", &command->listen, "ADDRESS:PORT",
+           "Where to listen; 127.0.0.1:8080 without it");
+  rows.add("config", &command->config, "FILE",
+           "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
+           "[collections], [limits]; options win over it");
+  rows.push_back(
+      ask::threads_row(command->threads,
+                       "Questions of each lane (points, tiles, sweeps) that are computed at once"));
+  rows.add("memory", &command->memory, "SIZE",
+           "Memory of all bodies, questions and answers; as much as fills all threads "
+           "without it");
+  rows.add("limit", &command->limits, "NAME=VALUE", limits_help()).repeated();
+  rows.add("cors", &command->cors, "ORIGIN", "Web pages of this origin may ask; * for all");
+  rows.add("token-file", &command->token_file, "FILE",
+           "Questions need the token of its first line, as Authorization: Bearer "
+           "TOKEN, or once as ?token=TOKEN in a browser");
+  rows.add("metrics", &command->metrics, "WHO",
+           "Who reads /metrics: open, token, closed; without it whoever may ask "
+           "questions");
+  rows.add("trusted-proxy", &command->trusted_proxies, "ADDRESS[/BITS]",
+           "A proxy that is believed its X-Forwarded-For and -Proto; may be given "
+           "often")
+      .repeated();
+  rows.add("files", &command->offers_files, "", "Give out the files themselves, by ranges");
+  declared.run = [command, &context] { return run_serve(*command, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -11,7 +11,6 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/query_options.h"
@@ -25,14 +24,14 @@ struct StreamOptions {
   TerrainOptions terrain;
   Serving wanted, had;
   std::string have;
-  std::string memory, output;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
   bool stats = false;
-  bool overwrite = false;
 };
 
 void check_options(const StreamOptions& options, const Context& context) {
-  if (options.output != "-") {
-    check_output(options.output, options.overwrite);
+  if (options.out.output != "-") {
+    check_output(options.out.output, options.out.overwrite);
     return;
   }
   if (context.json) {
@@ -59,14 +58,14 @@ std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& 
 
 StreamSummary send(const StreamOptions& options, const Terrain& terrain,
                    const StreamRequest& request) {
-  if (options.output == "-") {
+  if (options.out.output == "-") {
     const StreamSummary summary = terrain.stream(request, [](std::span<const std::byte> bytes) {
       write_to_stdout({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     });
     finish_stdout();
     return summary;
   }
-  OutputFile out(options.output, options.overwrite);
+  OutputFile out(options.out.output, options.out.overwrite);
   const StreamSummary summary = terrain.stream(
       request, [&](std::span<const std::byte> bytes) { out.write(bytes.data(), bytes.size()); });
   out.publish();
@@ -74,7 +73,7 @@ StreamSummary send(const StreamOptions& options, const Terrain& terrain,
 }
 
 void print_stats(const StreamOptions& options, const StreamSummary& s) {
-  std::fprintf(stderr, "%s: %s on %s in %s, %s\n", options.output.c_str(),
+  std::fprintf(stderr, "%s: %s on %s in %s, %s\n", options.out.output.c_str(),
                counted(s.splits, "split").c_str(),
                counted(s.base_vertices, "vertex", "vertices").c_str(),
                counted(s.frames, "frame").c_str(), human_bytes(s.bytes).c_str());
@@ -104,64 +103,60 @@ int run_stream(const StreamOptions& options, const Context& context) {
   request.limits = limits_of(options.memory, context);
   const StreamSummary summary = send(options, terrain, request);
   if (context.json) {
-    print_json({{"output", options.output},
-                {"base_vertices", summary.base_vertices},
-                {"splits", summary.splits},
-                {"frames", summary.frames},
-                {"bytes", summary.bytes},
-                {"split_bytes", summary.split_bytes},
-                {"certified_error", summary.certificate.error},
-                {"certified_deviation", summary.certificate.deviation},
-                {"border_moved_at_most", border_move_json(store, summary.certificate.error)},
-                {"exact", summary.certificate.complete && store.facts().base_error == 0},
-                {"units", units_json(crs_facts(store))},
-                {"cost", cost_json(summary.cost)}});
+    const CrsFacts crs = crs_facts(store);
+    ask::AnswerFacts facts =
+        ask::facts_of(summary.certificate,
+                      summary.certificate.complete && store.facts().base_error == 0, store, crs);
+    facts.cost = &summary.cost;
+    print_answer({{"output", options.out.output},
+                  {"base_vertices", summary.base_vertices},
+                  {"splits", summary.splits},
+                  {"frames", summary.frames},
+                  {"bytes", summary.bytes},
+                  {"split_bytes", summary.split_bytes}},
+                 facts);
   } else if (options.stats) {
     print_stats(options, summary);
   }
   return kExitDone;
 }
 
-/// Declares --window, --error, --level and --splits with a common prefix.
-void add_serving(CLI::App& app, Measures& measures, Serving& serving, const std::string& prefix,
-                 const std::string& what) {
-  app.add_option("--" + prefix + "window", serving.window, what + " window, in map units")
-      ->expected(4)
-      ->type_name("XMIN YMIN XMAX YMAX");
-  constexpr MeasureKind kHeight = MeasureKind::kHeight;
-  measures
-      .add(app, "--" + prefix + "error", serving.error, kHeight, NumberRange::kTolerance,
-           what + " certified error, in the height's unit, or as 50cm")
-      ->type_name("E");
-  measures
-      .add(app, "--" + prefix + "level", serving.levels, kHeight, NumberRange::kFinite,
+/// --window, --error, --level and --splits of what to send, or with --have- of what was sent before.
+void add_serving(ask::Parameters& rows, Serving& serving, bool is_had) {
+  const std::string what = is_had ? "What the receiver was served before:" : "What to send:";
+  rows.add(is_had ? "have-window" : "window", &serving.window, "XMIN YMIN XMAX YMAX",
+           what + " window")
+      .in(ask::Unit::kMap)
+      .values(4, 4);
+  rows.push_back(ask::error_row(serving.error, what + " certified error"));
+  if (is_had) rows.back().name = "have-error";
+  rows.add(is_had ? "have-level" : "level", &serving.levels, "H...",
            what + " heights: only what isolines at them need")
-      ->expected(1, 1000)
-      ->type_name("H...");
-  app.add_option("--" + prefix + "splits", serving.splits,
-                 what + " number of splits: only the first so many, the most important ones")
-      ->type_name("N")
-      ->check(counts());
+      .in(ask::Unit::kHeight)
+      .values(1, 1000);
+  rows.add(is_had ? "have-splits" : "splits", &serving.splits, "N",
+           what +
+               " number of splits: only the first so many, the most important "
+               "ones");
 }
 
 }  // namespace
 
-Action declare_stream(CLI::App& app, Context& context) {
+Declared declare_stream(Context& context) {
   const auto options = std::make_shared<StreamOptions>();
-  add_terrain_options(app, options->terrain, false);
-  add_serving(app, options->terrain.measures, options->wanted, "", "What to send:");
-  add_serving(app, options->terrain.measures, options->had, "have-",
-              "What the receiver was served before:");
-  app.add_option("--have", options->have,
-                 "What the receiver was served before, as `ptin unstream --json` prints it")
-      ->type_name("JSON");
-  app.add_option("-o,--output", options->output, "The stream to write; - for stdout")
-      ->type_name("OUT")
-      ->required();
-  app.add_flag("--stats", options->stats, "Print, on stderr, what was sent and what it cost");
-  add_memory_option(app, options->memory);
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_stream(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, false);
+  add_serving(rows, options->wanted, false);
+  add_serving(rows, options->had, true);
+  rows.add("have", &options->have, "JSON",
+           "What the receiver was served before, as `ptin unstream --json` prints "
+           "it");
+  add_output(rows, options->out, "The stream to write; - for stdout");
+  rows.add("stats", &options->stats, "", "Print, on stderr, what was sent and what it cost");
+  rows.push_back(ask::memory_row(options->memory));
+  declared.run = [options, &context] { return run_stream(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

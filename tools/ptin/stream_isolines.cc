@@ -9,29 +9,26 @@
 
 namespace ptin::tools {
 
-void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options) {
-  add_level_options(app, options.measures, options.levels,
-                    "Write isolines at these heights instead of the mesh",
-                    "The same at every multiple of D, from the base");
-  app.add_option("--window", options.window, "Cut the isolines at a window, in map units")
-      ->expected(4)
-      ->type_name("XMIN YMIN XMAX YMAX");
-  app.add_flag("--3d", options.z, "Points of isolines carry the height of their line");
-  app.add_flag("--steps", options.steps,
-               "The isolines of T0 and after every frame, told apart by the fields step, splits "
-               "and error");
+void add_stream_isolines(ask::Parameters& rows, StreamIsolineOptions& options) {
+  ask::add_levels(rows, options.levels, "Write isolines at these heights instead of the mesh",
+                  "The same at every multiple of D, from the base", ask::Door::kProgram);
+  rows.add("window", &options.window, "XMIN YMIN XMAX YMAX", "Cut the isolines at a window")
+      .in(ask::Unit::kMap)
+      .values(4, 4);
+  rows.add("3d", &options.z, "", "Points of isolines carry the height of their line");
+  rows.add("steps", &options.steps, "",
+           "The isolines of T0 and after every frame, told apart by the fields step, "
+           "splits and error");
 }
 
-StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, std::string output,
-                               bool overwrite, QueryLimits limits)
+StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, ask::Reading& reading,
+                               OutputOptions out, QueryLimits limits)
     : options_(options),
-      output_(std::move(output)),
-      overwrite_(overwrite),
+      reading_(reading),
+      out_(std::move(out)),
       stop_(limits.stop),
-      context_(std::move(limits), output_) {
-  if (!options.window.empty()) {
-    window_ = window_of(options.window, "--window");
-  }
+      context_(std::move(limits), out_.output) {
+  if (!options.window.empty()) window_ = window_of(options.window, "--window");
 }
 
 void StreamIsolines::follow(const StreamReader& reader) {
@@ -60,19 +57,17 @@ void StreamIsolines::follow(const StreamReader& reader) {
 
 void StreamIsolines::begin(const StreamReader& reader) {
   const StoreFacts& facts = reader.facts();
-  if (window_) {
-    check_on_terrain(*window_, facts, "--window");
-  }
+  if (window_) check_on_terrain(*window_, facts, "--window");
   const nlohmann::json metadata = nlohmann::json::parse(reader.metadata(), nullptr, false);
   const CrsFacts crs = metadata.is_object() ? crs_facts_of(metadata) : CrsFacts{};
-  options_.measures.settle(crs);
-  const std::vector<double> levels = levels_of(options_.levels, facts);
+  reading_.settle(crs);
+  const std::vector<double> levels = ask::levels_of(options_.levels, facts);
   isolines_.emplace(reader.tin(), LevelSet(levels, facts.heights), facts.heights, facts.map,
                     context_);
-  if (!output_.empty()) {
+  if (!out_.output.empty()) {
     const IndexLevels index{options_.levels.interval.value_or(0.0), options_.levels.base};
-    layer_ = std::make_unique<IsolineLayer>(
-        IsolineLayer::Options{output_, overwrite_, options_.z, options_.steps, crs, index, stop_});
+    layer_ = std::make_unique<IsolineLayer>(IsolineLayer::Options{
+        out_.output, out_.overwrite, options_.z, options_.steps, crs, index, stop_});
   }
 }
 

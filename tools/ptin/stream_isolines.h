@@ -20,25 +20,24 @@ namespace ptin::tools {
 
 /// --level, --interval, --base, --window, --3d, --steps.
 struct StreamIsolineOptions {
-  Measures
-      measures;  ///< Of all options of the subcommand; settled when the stream tells its units.
-  LevelOptions levels;
+  ask::Levels levels;
   std::vector<double> window;
   bool z = false;
   bool steps = false;
 
   [[nodiscard]] bool given() const { return levels.given(); }
 };
-void add_stream_isoline_options(CLI::App& app, StreamIsolineOptions& options);
+void add_stream_isolines(ask::Parameters& rows, StreamIsolineOptions& options);
 
 /// Follows a StreamReader and writes the isolines of its mesh: once, of the mesh at the end, or
 /// with --steps after T0 and after every frame of splits.
 class StreamIsolines {
  public:
   /// @param options  Outlive this; their levels become heights in the stream's unit.
+  /// @param reading  Of these options; settled when the stream tells its units.
   /// @param output  The layer; empty writes none.
   /// @param limits  Memory for the isolines that are kept and for writing them; the stop token.
-  StreamIsolines(const StreamIsolineOptions& options, std::string output, bool overwrite,
+  StreamIsolines(const StreamIsolineOptions& options, ask::Reading& reading, OutputOptions out,
                  QueryLimits limits);
 
   /// To be called after every StreamReader::feed_frame(). Cost: what the frame changed
@@ -53,11 +52,11 @@ class StreamIsolines {
   void write(const StreamReader& reader);
 
   const StreamIsolineOptions& options_;
-  std::string output_;
-  bool overwrite_;
+  ask::Reading& reading_;
+  OutputOptions out_;
+  std::optional<Window> window_;
   std::stop_token stop_;
   QueryContext context_;
-  std::optional<Window> window_;
   std::optional<ProgressiveIsolines> isolines_;
   /// Null without an output.
   std::unique_ptr<IsolineLayer> layer_;

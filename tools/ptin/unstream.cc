@@ -30,9 +30,9 @@ namespace {
 
 struct UnstreamOptions {
   std::vector<std::string> inputs;
-  std::string output, memory;
+  OutputOptions out;
+  std::optional<std::uint64_t> memory;
   StreamIsolineOptions isolines;
-  bool overwrite = false;
 };
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -56,12 +56,12 @@ nlohmann::json metadata_of(const StreamReader& reader) {
   return json;
 }
 
-/// As border_move_json() of the store that the stream came from.
-nlohmann::json border_move_of(const StreamReader& reader, double certified_error) {
+/// As border_moved_at_most() of the store that the stream came from.
+double border_move_of(const StreamReader& reader, double certified_error) {
   const nlohmann::json metadata = metadata_of(reader);
   const auto free_of_voids = metadata.find("free_of_voids");
-  return number_or_null(border_move_told_by(
-      metadata, free_of_voids != metadata.end() && *free_of_voids == true, certified_error));
+  return border_move_told_by(metadata, free_of_voids != metadata.end() && *free_of_voids == true,
+                             certified_error);
 }
 
 /// What the sender was asked for, from the metadata.  @throws Error corruption  it is no request
@@ -180,28 +180,29 @@ void warn_of_what_is_beyond(const Receiver& receiver, const Serving& asked,
                                           : "some levels in a window");
 }
 
-nlohmann::json answer_of(const UnstreamOptions& options, const Receiver& receiver,
-                         const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs,
-                         const Serving& asked) {
+ask::Json answer_of(const UnstreamOptions& options, const Receiver& receiver,
+                    const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs,
+                    const Serving& asked) {
   const StreamReader& reader = receiver.reader();
   const Serving certified = receiver.certified_for();
-  return {{"output", options.output.empty() ? nlohmann::json() : nlohmann::json(options.output)},
-          {"complete", receiver.complete()},
-          {"splits", reader.splits()},
-          {"splits_in_all", reader.splits_in_all()},
-          {"vertices", refined.vertices},
-          {"void_vertices", refined.void_vertices},
-          {"triangles", refined.triangles},
-          {"t0_vertices", refined.t0_vertices},
-          {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
-          {"certified_error", refined.certified_error},
-          {"certified_deviation", refined.certified_deviation},
-          {"border_moved_at_most", border_move_of(reader, refined.certified_error)},
-          {"certified_for", certified.given() ? to_json(certified) : nlohmann::json()},
-          {"exact", receiver.exact(asked)},
-          {"units", units_json(crs)},
-          {"bytes_used", reader.bytes_used()},
-          {"have", receiver.have()}};
+  ask::Json answer = {
+      {"output", options.out.output.empty() ? ask::Json() : ask::Json(options.out.output)},
+      {"complete", receiver.complete()},
+      {"splits", reader.splits()},
+      {"splits_in_all", reader.splits_in_all()},
+      {"vertices", refined.vertices},
+      {"void_vertices", refined.void_vertices},
+      {"triangles", refined.triangles},
+      {"t0_vertices", refined.t0_vertices},
+      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
+      {"certified_for", certified.given() ? ask::Json(to_json(certified)) : ask::Json()},
+      {"bytes_used", reader.bytes_used()},
+      {"have", receiver.have()}};
+  const ask::AnswerFacts facts{refined.certified_error, refined.certified_deviation,
+                               border_move_of(reader, refined.certified_error),
+                               receiver.exact(asked), &crs};
+  put(answer, facts, ask::Door::kProgram);
+  return answer;
 }
 
 void print_report(const Receiver& receiver, const RefinedTin& refined) {
@@ -233,7 +234,7 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
   warn_of_what_is_beyond(receiver, asked, context);
   if (context.json) {
     const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
-    nlohmann::json answer = answer_of(options, receiver, refined, {}, crs, asked);
+    ask::Json answer = answer_of(options, receiver, refined, {}, crs, asked);
     answer.erase("written");
     answer["isolines"] = lines;
     print_json(answer);
@@ -253,17 +254,17 @@ void check_options(const UnstreamOptions& options, bool json) {
       throw Error(ErrorCode::invalid_argument,
                   "--steps, --window and --3d are for isolines; give --level H... or --interval D");
     }
-    if (!options.output.empty()) static_cast<void>(mesh_format_of(options.output));
-  } else if (!options.output.empty()) {
-    static_cast<void>(isoline_format_of(options.output));
-    if (options.isolines.steps) check_isoline_fields(options.output, "--steps");
-    if (options.output == "-" && json) {
+    if (!options.out.output.empty()) static_cast<void>(mesh_format_of(options.out.output));
+  } else if (!options.out.output.empty()) {
+    static_cast<void>(isoline_format_of(options.out.output));
+    if (options.isolines.steps) check_isoline_fields(options.out.output, "--steps");
+    if (options.out.output == "-" && json) {
       throw Error(ErrorCode::invalid_argument,
                   "--json and -o - both write to stdout; give the isolines a file name");
     }
   }
-  if (!options.output.empty() && options.output != "-") {
-    check_output(options.output, options.overwrite);
+  if (!options.out.output.empty() && options.out.output != "-") {
+    check_output(options.out.output, options.out.overwrite);
   }
 }
 
@@ -272,7 +273,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   const std::uint64_t memory = memory_limit_of(options.memory);
   std::optional<StreamIsolines> isolines;
   if (options.isolines.given()) {
-    isolines.emplace(options.isolines, options.output, options.overwrite,
+    isolines.emplace(options.isolines, *context.reading, options.out,
                      QueryLimits{memory / 2, context.stop});
   }
   std::string name = options.inputs.size() == 1 ? options.inputs.front() : "streams";
@@ -291,12 +292,12 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   Mesh mesh = surface_mesh(refined, receiver.reader().facts());
   const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
   set_crs(mesh, crs, receiver.reader().facts());
-  if (!options.output.empty()) write_mesh(mesh, options.output, options.overwrite);
+  if (!options.out.output.empty()) write_mesh(mesh, options.out.output, options.out.overwrite);
   const Serving everywhere = receiver.within_terrain({});
-  if (!options.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
-  const bool tells_frame = !options.output.empty() && has_frame(options.output);
+  if (!options.out.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
+  const bool tells_frame = !options.out.output.empty() && has_frame(options.out.output);
   if (context.json) {
-    nlohmann::json answer = answer_of(options, receiver, refined, mesh, crs, everywhere);
+    ask::Json answer = answer_of(options, receiver, refined, mesh, crs, everywhere);
     if (tells_frame) answer["local_frame"] = frame_json(mesh.frame);
     print_json(answer);
   } else if (!context.quiet) {
@@ -308,18 +309,23 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_unstream(CLI::App& app, Context& context) {
+Declared declare_unstream(Context& context) {
   const auto options = std::make_shared<UnstreamOptions>();
-  app.add_option("IN", options->inputs, "Streams, one after the other; - for stdin")->required();
-  app.add_option(
-         "-o,--output", options->output,
-         "The mesh to write, or with --level or --interval the layer of isolines; its extension "
-         "chooses the format. None: only tell what arrived")
-      ->type_name("OUT");
-  add_stream_isoline_options(app, options->isolines);
-  add_memory_option(app, options->memory);
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_unstream(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  rows.add("in", &options->inputs, "", "Streams, one after the other; - for stdin")
+      .spelled("IN")
+      .values(1, ask::kAnyNumberOfValues)
+      .required_at(ask::Door::kBoth);
+  add_output(
+      rows, options->out,
+      "The mesh to write, or with --level or --interval the layer of isolines; its extension "
+      "chooses the format. None: only tell what arrived",
+      false);
+  add_stream_isolines(rows, options->isolines);
+  rows.push_back(ask::memory_row(options->memory));
+  declared.run = [options, &context] { return run_unstream(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -5,23 +5,29 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
-#include <CLI/CLI.hpp>
+#include "tools/ptin/command_line.h"
 
 namespace ptin::tools {
 
-/// "-of" where --of is an option of `app`, as GDAL's tools write it; else empty. It would be read as
-/// `-o f`.
-[[nodiscard]] std::string one_hyphen_too_few(const CLI::App& app,
-                                             std::span<const std::string> words);
+/// A command line that is looked at for its fault.
+struct UsageOf {
+  std::string command;               ///< The subcommand; empty: there is none.
+  std::vector<OptionFacts> options;  ///< As far as they were read.
+  std::span<const std::string> words;
+};
+
+/// "-of" where --of is an option, as GDAL's tools write it; else empty. It would be read as `-o f`.
+[[nodiscard]] std::string one_hyphen_too_few(const UsageOf& usage);
 
 /// The fault of `word` in the place of a subcommand, in a sentence.
-[[nodiscard]] std::string unknown_subcommand_sentence(const CLI::App& program,
-                                                      const std::string& word);
+[[nodiscard]] std::string unknown_subcommand_sentence(const std::string& word);
 
-/// The fault of the words behind a subcommand, or behind `ptin` where there is none.
-/// @param app  The one that reads them, as far as it came.
-[[nodiscard]] std::string usage_fault(const CLI::App& app, std::span<const std::string> words,
-                                      const CLI::ParseError& error);
+/// The fault of words that do not parse, in a sentence.
+/// @param message  CLI11's, or a sentence.
+/// @param extra    Words that nothing takes.
+[[nodiscard]] std::string usage_fault(const UsageOf& usage, std::string message,
+                                      const std::vector<std::string>& extra);
 
 }  // namespace ptin::tools

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -14,12 +15,12 @@
 #include <ogr_spatialref.h>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/error.h"
 #include "engine/remote/remote_file.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
 #include "tools/ptin/error_stats.h"
@@ -35,7 +36,8 @@ struct VerifyCommand {
   std::vector<std::string> against;
   LineInputs lines;
   std::vector<double> tolerances;
-  std::string memory, tmp;
+  std::optional<std::uint64_t> memory;
+  std::string tmp;
   std::size_t faults = 20;
 };
 
@@ -259,39 +261,43 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
 
 }  // namespace
 
-Action declare_verify(CLI::App& app, Context& context) {
+Declared declare_verify(Context& context) {
   const auto command = std::make_shared<VerifyCommand>();
-  add_terrain_options(app, command->terrain, false);
-  auto* against =
-      app.add_option(
-             "--against", command->against,
-             "The source, every input of the build: certified errors are checked at each of its\n"
-             "samples")
-          ->type_name("INPUT...");
-  app.add_option("--breaklines", command->lines.breaklines,
-                 "The files of breaklines of the build: the TIN is held against them")
-      ->needs(against)
-      ->type_name("FILE...");
-  app.add_option("--boundary", command->lines.boundary, "The file of the boundary of the build")
-      ->needs(against)
-      ->type_name("FILE");
-  command->terrain.measures
-      .add(app, "--tolerance", command->tolerances, MeasureKind::kHeight, NumberRange::kNotNegative,
-           "Tolerances to check against the source (default: 0 and four more)")
-      ->needs(against)
-      ->type_name("E...");
-  app.add_option("--memory", command->memory,
-                 "Memory to check the splits in, and to sort the points of the source in, as "
-                 "512M or 2G (default 1G)")
-      ->type_name("SIZE");
-  app.add_option("--tmp", command->tmp,
-                 "Folder for temporary files of points that do not fit (default: beside FILE)")
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR");
-  app.add_option("--faults", command->faults, "List at most this many faults")
-      ->capture_default_str()
-      ->type_name("N");
-  return [command, &context] {
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, command->terrain, false);
+  rows.add("against", &command->against, "INPUT...",
+           "The source, every input of the build: certified errors are checked at each "
+           "of its samples")
+      .values(1, ask::kAnyNumberOfValues);
+  rows.add("breaklines", &command->lines.breaklines, "FILE...",
+           "The files of breaklines of the build: the TIN is held against them")
+      .values(1, ask::kAnyNumberOfValues)
+      .needing("against");
+  rows.add("boundary", &command->lines.boundary, "FILE", "The file of the boundary of the build")
+      .needing("against");
+  rows.add("tolerance", &command->tolerances, "E...",
+           "Tolerances to check against the source; without it 0 and four more")
+      .in(ask::Unit::kHeight)
+      .within(ask::kNotNegative)
+      .values(1, ask::kAnyNumberOfValues)
+      .needing("against");
+  rows.push_back(ask::memory_row(command->memory,
+                                 "Memory to check the splits in, and to sort the points of the "
+                                 "source in, as 512M or 2G (default 1G)"));
+  rows.add(
+      "tmp",
+      [&tmp = command->tmp](const std::string& folder) {
+        if (!std::filesystem::is_directory(folder)) {
+          refuse("there is no folder " + folder);
+        }
+        tmp = folder;
+      },
+      "DIR",
+      "Folder for temporary files of points that do not fit (default: beside "
+      "FILE)");
+  rows.add("faults", &command->faults, "N", "List at most this many faults").with_default();
+  declared.run = [command, &context] {
     const Findings findings = verify(*command, context);
     if (context.json) {
       print_json(findings_json(*command, findings));
@@ -300,6 +306,7 @@ Action declare_verify(CLI::App& app, Context& context) {
     }
     return findings.fault_count == 0 ? kExitDone : kExitNegative;
   };
+  return declared;
 }
 
 }  // namespace ptin::tools

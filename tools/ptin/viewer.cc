@@ -31,8 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ViewerOptions {
-  std::string folder, stream;
-  bool overwrite = false;
+  OutputOptions out;
+  std::string stream;
 };
 
 struct WrittenFile {
@@ -78,7 +78,7 @@ std::string name_in_folder(const std::string& stream) {
 }
 
 std::string path_in(const ViewerOptions& options, std::string_view name) {
-  return (fs::path(options.folder) / name).string();
+  return (fs::path(options.out.output) / name).string();
 }
 
 /// True when the stream lies in the folder already: then it stays as it is.
@@ -95,7 +95,7 @@ void make_folder(const std::string& folder) {
 
 WrittenFile write_file(const ViewerOptions& options, std::string_view name,
                        std::string_view content) {
-  OutputFile out(path_in(options, name), options.overwrite);
+  OutputFile out(path_in(options, name), options.out.overwrite);
   out.write(content);
   out.publish();
   return {std::string(name), content.size()};
@@ -103,7 +103,7 @@ WrittenFile write_file(const ViewerOptions& options, std::string_view name,
 
 WrittenFile copy_stream(const ViewerOptions& options, const std::string& name) {
   std::ifstream in = open_to_copy(options.stream);
-  OutputFile out(path_in(options, name), options.overwrite);
+  OutputFile out(path_in(options, name), options.out.overwrite);
   std::vector<char> buffer(std::size_t{1} << 20);
   std::uint64_t bytes = 0;
   do {
@@ -132,12 +132,12 @@ std::vector<WrittenFile> write_all(const ViewerOptions& options, const std::stri
 }
 
 void check_options(const ViewerOptions& options, const std::string& name) {
-  make_folder(options.folder);
+  make_folder(options.out.output);
   for (const ViewerFile& file : viewer_files()) {
-    check_output(path_in(options, file.name), options.overwrite);
+    check_output(path_in(options, file.name), options.out.overwrite);
   }
   if (!name.empty() && !is_in_place(options, name)) {
-    check_output(path_in(options, name), options.overwrite);
+    check_output(path_in(options, name), options.out.overwrite);
   }
 }
 
@@ -154,7 +154,7 @@ int run_viewer(const ViewerOptions& options, const Context& context) {
     for (const WrittenFile& file : written) {
       files.push_back({{"name", file.name}, {"bytes", file.bytes}});
     }
-    print_json({{"output", options.folder},
+    print_json({{"output", options.out.output},
                 {"files", std::move(files)},
                 {"stream", name.empty() ? nlohmann::json() : nlohmann::json(name)}});
   } else if (!context.quiet) {
@@ -163,25 +163,24 @@ int run_viewer(const ViewerOptions& options, const Context& context) {
     std::fprintf(stderr,
                  "%s: %s in %s; any web host can give them out, here "
                  "`python3 -m http.server --directory %s`\n",
-                 options.folder.c_str(), human_bytes(bytes).c_str(),
-                 counted(written.size(), "file").c_str(), options.folder.c_str());
+                 options.out.output.c_str(), human_bytes(bytes).c_str(),
+                 counted(written.size(), "file").c_str(), options.out.output.c_str());
   }
   return kExitDone;
 }
 
 }  // namespace
 
-Action declare_viewer(CLI::App& app, Context& context) {
+Declared declare_viewer(Context& context) {
   const auto options = std::make_shared<ViewerOptions>();
-  app.add_option("-o,--output", options->folder,
-                 "The folder to write into; made where it is missing")
-      ->type_name("FOLDER")
-      ->required();
-  app.add_option("--stream", options->stream,
-                 "A stream that `ptin stream` wrote: copied beside the page, which opens it")
-      ->type_name("FILE");
-  app.add_flag("--overwrite", options->overwrite, "Replace existing files");
-  return [options, &context] { return run_viewer(*options, context); };
+  Declared declared;
+  add_output(declared.parameters, options->out,
+             "The folder to write into; made where it is missing", true, "FOLDER");
+  declared.parameters.add(
+      "stream", &options->stream, "FILE",
+      "A stream that `ptin stream` wrote: copied beside the page, which opens it");
+  declared.run = [options, &context] { return run_viewer(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

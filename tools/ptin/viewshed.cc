@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin viewshed: what one observer sees, as a raster or as points.
+#include "tools/ask/viewshed.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -20,7 +22,6 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/facts/numbers.h"
 #include "tools/formats/geotiff_crs.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"
@@ -37,14 +38,10 @@ namespace {
 
 struct ViewshedOptions {
   TerrainOptions terrain;
-  double x = 0, y = 0, height = 0;
-  double target_height = 0, radius = 0;
-  double curvature = Curvature{}.coefficient;
-  bool absolute = false;
-  std::optional<std::string> pixel_size;
-  DetailOptions detail;
-  std::string memory, output;
-  bool overwrite = false;
+  ask::ViewshedQuestion question;
+  std::vector<std::string> pixel_size;
+  std::optional<std::uint64_t> memory;
+  OutputOptions out;
 };
 
 constexpr std::uint64_t kLeastCache = std::uint64_t{1} << 20;
@@ -59,18 +56,12 @@ bool is_raster(const std::string& path) {
   return extension == ".tif" || extension == ".tiff";
 }
 
-/// The side of a pixel that was asked for; none: none was.
-std::vector<Length> sides_of(const ViewshedOptions& options) {
-  if (!options.pixel_size) return {};
-  return pixel_sides_of({*options.pixel_size});
-}
-
 /// The pixels that were asked for, in map units; none: those of the terrain's raster. As in an
 /// export a raster has 2 x 2 at least.
 std::optional<std::array<double, 2>> pixel_size_of(const ViewshedOptions& options,
                                                    const CrsFacts& crs,
                                                    const ViewshedRequest& request) {
-  const std::vector<Length> sides = sides_of(options);
+  const std::vector<Length> sides = pixel_sides_of(options.pixel_size);
   if (sides.empty()) return std::nullopt;
   const std::array<double, 2> size = pixel_size_of(sides, crs, request.eye);
   const bool is_wider = size[0] * request.ground_per_map_x > request.radius;
@@ -86,26 +77,26 @@ std::optional<std::array<double, 2>> pixel_size_of(const ViewshedOptions& option
 }
 
 void check_options(const ViewshedOptions& options) {
-  if (options.output == "-") {
+  if (options.out.output == "-") {
     throw Error(ErrorCode::invalid_argument, "the output must be a file: .tif for a raster, " +
                                                  known_vector_extensions() + " for vertices");
   }
-  if (!is_raster(options.output) && find_vector_format(options.output) == nullptr) {
+  if (!is_raster(options.out.output) && find_vector_format(options.out.output) == nullptr) {
     throw Error(ErrorCode::invalid_argument,
                 "the name must end in .tif for a raster, or in one of " +
                     known_vector_extensions() + " for vertices",
-                options.output);
+                options.out.output);
   }
-  static_cast<void>(sides_of(options));
-  if (!is_raster(options.output) && options.pixel_size) {
+  static_cast<void>(pixel_sides_of(options.pixel_size));
+  if (!is_raster(options.out.output) && !options.pixel_size.empty()) {
     throw Error(ErrorCode::invalid_argument, "--pixel-size is for rasters (.tif); leave it out",
-                options.output);
+                options.out.output);
   }
-  check_output(options.output, options.overwrite);
+  check_output(options.out.output, options.out.overwrite);
 }
 
 void check_stop(const Context& context, const ViewshedOptions& options) {
-  stop_if_asked(context.stop, "writing", options.output);
+  stop_if_asked(context.stop, "writing", options.out.output);
 }
 
 /// Writes the raster by rows of blocks, between which a stop is obeyed.
@@ -121,26 +112,26 @@ void write_pixels(GDALRasterBand& band, const Viewshed& seen, const ViewshedOpti
         seen.pixels.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
     require_done(band.RasterIO(GF_Write, 0, row, width, rows, const_cast<Sight*>(first), width,
                                rows, GDT_Byte, 0, 0, nullptr),
-                 "cannot write the raster", options.output);
+                 "cannot write the raster", options.out.output);
   }
 }
 
 void write_raster(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
                   const Context& context) {
-  PendingFile pending(options.output, options.overwrite);
+  PendingFile pending(options.out.output, options.out.overwrite);
   const char* creation[] = {"COMPRESS=DEFLATE", "TILED=YES", "BIGTIFF=IF_SAFER", nullptr};
   const int width = static_cast<int>(seen.width);
   const int height = static_cast<int>(seen.height);
   GDALDatasetUniquePtr file(driver_named("GTiff").Create(
       pending.temporary().c_str(), width, height, 1, GDT_Byte, const_cast<char**>(creation)));
-  if (!file) throw gdal_failure("cannot create the raster", options.output);
+  if (!file) throw gdal_failure("cannot create the raster", options.out.output);
   double transform[6] = {seen.first.x - seen.step_x / 2, seen.step_x, 0,
                          seen.first.y + seen.step_y / 2, 0,           -seen.step_y};
-  require_done(file->SetGeoTransform(transform), "cannot place the raster", options.output);
-  set_geotiff_crs(*file, wkt, false, options.output);
+  require_done(file->SetGeoTransform(transform), "cannot place the raster", options.out.output);
+  set_geotiff_crs(*file, wkt, false, options.out.output);
   GDALRasterBand* band = file->GetRasterBand(1);
   require_done(band->SetNoDataValue(static_cast<double>(Sight::kNothing)),
-               "cannot set the nodata value", options.output);
+               "cannot set the nodata value", options.out.output);
   // The mesh is freed by now: half of its memory is enough for GDAL.
   const std::uint64_t memory = request_memory(options);
   const GdalCacheLimit cache(std::clamp<std::uint64_t>(memory / 2, kLeastCache, kMostCache));
@@ -149,14 +140,14 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   file->FlushCache(true);
   file.reset();
   if (CPLGetLastErrorType() == CE_Failure) {
-    throw gdal_failure("cannot write the raster", options.output);
+    throw gdal_failure("cannot write the raster", options.out.output);
   }
   pending.publish();
 }
 
 void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
                     const Context& context) {
-  VectorFile file(options.output, options.overwrite,
+  VectorFile file(options.out.output, options.out.overwrite,
                   {"viewshed",
                    wkbPoint,
                    {{"height", VectorFile::FieldType::kReal},
@@ -174,73 +165,62 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
 }
 
 /// Counts of targets as JSON; null where they were not asked for.
-nlohmann::json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden,
-                           std::uint64_t undecided) {
+ask::Json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden,
+                      std::uint64_t undecided) {
   if (!asked) return nullptr;
   return {{"visible", visible}, {"hidden", hidden}, {"undecided", undecided}};
 }
 
 void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFile& store,
             const CrsFacts& crs, const Context& context) {
-  const bool raster = is_raster(options.output);
+  const bool raster = is_raster(options.out.output);
   if (context.json) {
-    print_json({{"output", options.output},
-                {"eye_height", seen.eye_height},
-                {"width", seen.width},
-                {"height", seen.height},
-                {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels,
-                                       seen.undecided_pixels)},
-                {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices,
-                                         seen.undecided_vertices)},
-                {"certified_error", seen.certified_error},
-                {"certified_deviation", seen.certified_deviation},
-                {"border_moved_at_most", border_move_json(store, seen.certified_error)},
-                {"exact", seen.exact},
-                {"units", units_json(crs)},
-                {"cost", cost_json(seen.cost)}});
+    print_answer({{"output", options.out.output},
+                  {"eye_height", seen.eye_height},
+                  {"width", seen.width},
+                  {"height", seen.height},
+                  {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels,
+                                         seen.undecided_pixels)},
+                  {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices,
+                                           seen.undecided_vertices)}},
+                 ask::facts_of(seen, store, crs));
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
     const std::uint64_t hidden = raster ? seen.hidden_pixels : seen.hidden_vertices;
     const std::uint64_t undecided = raster ? seen.undecided_pixels : seen.undecided_vertices;
     const std::string open =
         undecided == 0 ? "" : " for certain, " + grouped(undecided) + " undecided";
-    std::printf("%s: %s of %s %s visible%s%s\n", options.output.c_str(), grouped(visible).c_str(),
-                grouped(visible + hidden + undecided).c_str(), raster ? "pixels" : "vertices",
-                open.c_str(), seen.exact ? "" : ", not exact");
+    std::printf("%s: %s of %s %s visible%s%s\n", options.out.output.c_str(),
+                grouped(visible).c_str(), grouped(visible + hidden + undecided).c_str(),
+                raster ? "pixels" : "vertices", open.c_str(), seen.exact ? "" : ", not exact");
   }
 }
 
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
   // Without --pixel-size, a terrain of points is refused here: its grid is far finer than anybody
   // wants to see.
-  if (is_raster(options.output) && !options.pixel_size) {
+  if (is_raster(options.out.output) && options.pixel_size.empty()) {
     static_cast<void>(own_pixel_size(terrain.store()));
   }
   const CrsFacts crs = crs_facts(terrain.store());
-  ViewshedRequest request;
-  request.eye = {options.x, options.y};
+  ViewshedRequest request = options.question.request;
+  request.eye = {options.question.x, options.question.y};
   check_on_terrain(request.eye, terrain.store().facts(), "X Y");
-  request.eye_height = options.height;
-  request.absolute = options.absolute;
-  request.target_height = options.target_height;
   const Ground ground = ground_of(crs);
-  request.curvature = {options.curvature, ground.earth_diameter};
-  const MapPoint per_unit = ground.per_map_unit(request.eye);
-  request.ground_per_map_x = per_unit.x;
-  request.ground_per_map_y = per_unit.y;
-  request.detail = detail_of(options.detail);
+  ask::set_ground(request, ground);
   request.limits.stop = context.stop;
   request.limits.memory_bytes = request_memory(options);
+  const double radius = options.question.radius;
   request.radius =
-      ground.geographic ? options.radius / ground.metres_per_height : options.radius * per_unit.x;
+      ground.geographic ? radius / ground.metres_per_height : radius * request.ground_per_map_x;
   request.pixel_size = pixel_size_of(options, crs, request);
-  request.pixels = is_raster(options.output);
+  request.pixels = is_raster(options.out.output);
   request.list_vertices = !request.pixels;
   const Viewshed seen = terrain.viewshed(request);
-  if (is_raster(options.output)) {
+  if (is_raster(options.out.output)) {
     write_raster(seen, options, crs.wkt, context);
   } else {
     write_vertices(seen, options, crs.wkt, context);
@@ -251,52 +231,25 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_viewshed(CLI::App& app, Context& context) {
+Declared declare_viewshed(Context& context) {
   const auto options = std::make_shared<ViewshedOptions>();
-  add_terrain_options(app, options->terrain, true);
-  const CLI::Validator position = numbers(NumberRange::kFinite, "in map units");
-  Measures& measures = options->terrain.measures;
-  app.add_option("X", options->x, "The observer's position, in map units")
-      ->required()
-      ->check(position);
-  app.add_option("Y", options->y, "")->required()->check(position);
-  measures
-      .add(app, "H", options->height, MeasureKind::kHeight, NumberRange::kFinite,
-           "The observer's height above the surface")
-      ->required();
-  measures
-      .add(app, "--radius", options->radius, MeasureKind::kGround, NumberRange::kPositive,
-           "How far to look: map units (metres in a geographic CRS), or 5km, 3mi")
-      ->type_name("R")
-      ->required();
-  app.add_flag("--absolute", options->absolute, "H is a height of itself, not above the surface");
-  measures
-      .add(app, "--target-height", options->target_height, MeasureKind::kHeight,
-           NumberRange::kFinite, "Height of targets above the surface")
-      ->type_name("T");
-  add_curvature_option(app, options->curvature);
-  app.add_option(
-         "--pixel-size", options->pixel_size,
-         "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, converted at "
-         "the observer (default: that of the raster it was built from)")
-      ->type_name("S");
-  add_detail_options(
-      app, options->terrain.measures, options->detail,
-      " at the radius, less towards the observer; where the full TIN may answer otherwise, a "
-      "target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
-      "Of the TIN of the terrain's N most important vertices, and more towards the "
-      "observer; undecided targets as with --error");
-  app.add_option("-o,--output", options->output,
-                 "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with "
-                 "`visible` and "
-                 "`certain` (" +
-                     known_vector_extensions() + ")")
-      ->type_name("OUT")
-      ->required();
-  app.add_option("--memory", options->memory, "Memory for the answer, as 512M or 2G (default 4G)")
-      ->type_name("SIZE");
-  app.add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  return [options, &context] { return run_viewshed(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, true);
+  ask::add_viewshed(rows, options->question);
+  rows.add("pixel-size", &options->pixel_size, "S",
+           "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, "
+           "converted at the observer (default: that of the raster it was built "
+           "from)");
+  add_output(
+      rows, options->out,
+      "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with `visible` "
+      "and `certain` (" +
+          known_vector_extensions() + ")");
+  rows.push_back(
+      ask::memory_row(options->memory, "Memory for the answer, as 512M or 2G (default 4G)"));
+  declared.run = [options, &context] { return run_viewshed(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

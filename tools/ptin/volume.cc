@@ -33,13 +33,13 @@ constexpr AnswerKinds kAnswerKinds{.layer = false, .plot = true};
 
 struct VolumeOptions {
   TerrainOptions terrain;
-  LevelOptions levels;
+  ask::Levels levels;
   std::string against;
-  RegionOptions region;
-  DetailOptions detail;
+  ask::RegionText region;
+  DetailRequest detail;
   int threads = 0;
-  std::string memory;
-  AnswerOptions answer;
+  std::optional<std::uint64_t> memory;
+  OutputOptions answer;
 };
 
 void warn(const std::string& what, const Context& context) {
@@ -96,7 +96,7 @@ VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
                          const std::optional<Region>& region, const Context& context) {
   VolumeRequest request;
   request.region = region;
-  request.detail = detail_of(options.detail);
+  request.detail = options.detail;
   const Ground ground = ground_of(crs);
   request.ground = {ground.per_map_unit, !ground.geographic};
   // Borders move by metres where map units are degrees, and by map units elsewhere.
@@ -110,17 +110,17 @@ VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
   return request;
 }
 
-nlohmann::json interval_json(const CertifiedVolume& v) {
+ask::Json interval_json(const CertifiedVolume& v) {
   return {{"volume", v.value}, {"low", v.low}, {"high", v.high}};
 }
 
 /// The result of a level, or of the other terrain.
-nlohmann::json volumes_json(const VolumeResult& result) {
+ask::Json volumes_json(const VolumeResult& result) {
   return {{"cut", interval_json(result.cut)},
           {"fill", interval_json(result.fill)},
           {"net", interval_json(result.net)},
           {"rounding", result.rounding},
-          {"mean_difference", number_or_null(result.mean_difference)},
+          {"mean_difference", result.mean_difference},
           {"area",
            {{"surface", result.surface_area},
             {"cut", result.cut_area},
@@ -134,18 +134,12 @@ void print_answer(std::span<const VolumeResult> results, std::span<const double>
                   const VolumeOptions& options, const Terrain& terrain, const Terrain* other,
                   const CrsFacts& crs, const std::optional<Transformed>& transformed) {
   const VolumeResult& result = results.front();
-  nlohmann::json units = units_json(crs);
-  units["ground"] = unit_of_ground(crs);
-  nlohmann::json answer = {
-      {"output", output_json(options.answer)},
-      {"against", nullptr},
-      {"certified_error", result.certificate.error},
-      {"certified_deviation", result.certificate.deviation},
-      {"border_moved_at_most", border_move_json(terrain.store(), result.certificate.error)},
-      {"exact", result.exact},
-      {"transformed", transformed_json(transformed)},
-      {"units", units},
-      {"cost", cost_json(result.cost)}};
+  ask::Json answer = {{"output", output_json(options.answer)}, {"against", nullptr}};
+  ask::AnswerFacts facts = ask::facts_of(result.certificate, result.exact, terrain.store(), crs);
+  facts.transformed = &transformed;
+  facts.cost = &result.cost;
+  put(answer, facts, ask::Door::kProgram);
+  answer["units"]["ground"] = unit_of_ground(crs);
   if (levels.size() > 1) {
     for (std::size_t i = 0; i < levels.size(); ++i) {
       answer["levels"].push_back(volumes_json(results[i]));
@@ -153,14 +147,14 @@ void print_answer(std::span<const VolumeResult> results, std::span<const double>
     }
   } else {
     answer.update(volumes_json(result));
-    answer["level"] = other == nullptr ? nlohmann::json(levels[0]) : nlohmann::json();
+    answer["level"] = other == nullptr ? ask::Json(levels[0]) : ask::Json();
   }
   if (other != nullptr) {
     const Certificate& c = result.other_certificate;
     answer["against"] = {{"file", options.against},
                          {"certified_error", c.error},
                          {"certified_deviation", c.deviation},
-                         {"border_moved_at_most", border_move_json(other->store(), c.error)}};
+                         {"border_moved_at_most", border_moved_at_most(other->store(), c.error)}};
   }
   print_json(answer);
 }
@@ -188,7 +182,7 @@ std::string csv_of(std::span<const VolumeResult> results, std::span<const double
 std::vector<double> levels_asked(const VolumeOptions& options, const StoreFacts& facts) {
   constexpr std::size_t kMost = 10'000;
   std::vector<double> levels =
-      options.levels.given() ? levels_of(options.levels, facts) : std::vector<double>{0.0};
+      options.levels.given() ? ask::levels_of(options.levels, facts) : std::vector<double>{0.0};
   if (levels.size() > kMost) {
     refuse("there are " + grouped(levels.size()) + " levels, more than " + grouped(kMost) +
                "; give a larger --interval",
@@ -245,7 +239,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
            options.answer.output);
   }
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.error, context);
+  warn_of_terrain(terrain.store(), options.detail.tolerance, context);
   CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
   double other_height_scale = 1.0;
@@ -253,13 +247,12 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     TerrainOptions of_other = options.terrain;
     of_other.file = options.against;
     other = open_terrain(of_other, context);
-    warn_of_terrain(other->store(), options.detail.error, context);
+    warn_of_terrain(other->store(), options.detail.tolerance, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
   }
-  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs);
-  tell_transformed(asked.transformed, "the polygon", crs, context);
+  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs, context);
   VolumeRequest request = request_of(options, crs, asked.region, context);
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
@@ -292,31 +285,27 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 
 }  // namespace
 
-Action declare_volume(CLI::App& app, Context& context) {
+Declared declare_volume(Context& context) {
   const auto options = std::make_shared<VolumeOptions>();
-  add_terrain_options(app, options->terrain, false);
-  add_level_options(app, options->terrain.measures, options->levels,
-                    "Heights, in the height's unit; of several the answer is a table",
-                    "Every multiple of D, from the base");
-  app.add_option("--against", options->against,
-                 "A second .ptin file, on any grid, in the same CRS; cut is where FILE is above it")
-      ->type_name("OTHER")
-      ->excludes(app.get_option("--level"))
-      ->excludes(app.get_option("--interval"));
-  add_region_options(app, options->region, RegionKinds::kWithInside);
-  add_detail_options(app, options->terrain.measures, options->detail,
-                     ", of either file; volumes come with intervals",
-                     "Measure the TINs of the N most important vertices; volumes come with "
-                     "intervals");
-  add_memory_option(app, options->memory);
-  add_answer_options(app, options->answer, kAnswerKinds);
-  app.add_option(
-         "--threads", options->threads,
-         "Threads (default: one a processor that affinity and cgroups leave this process);\n"
-         "the answer is the same for any number")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  return [options, &context] { return run_volume(*options, context); };
+  Declared declared;
+  ask::Parameters& rows = declared.parameters;
+  add_terrain(rows, options->terrain, false);
+  ask::add_levels(rows, options->levels, "Heights; of several the answer is a table",
+                  "Every multiple of D, from the base", ask::Door::kProgram);
+  rows.add("against", &options->against, "OTHER",
+           "A second .ptin file, on any grid, in the same CRS; cut is where FILE is "
+           "above it")
+      .excluding("level interval");
+  ask::add_region(rows, options->region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
+  ask::add_detail(rows, options->detail, ", of either file; volumes come with intervals",
+                  "Measure the TINs of the N most important vertices; volumes come with intervals");
+  rows.push_back(ask::memory_row(options->memory));
+  add_answer_output(rows, options->answer, kAnswerKinds);
+  rows.push_back(ask::threads_row(options->threads,
+                                  "Threads (default: one a processor that affinity and cgroups "
+                                  "leave this process); the answer is the same for any number"));
+  declared.run = [options, &context] { return run_volume(*options, context); };
+  return declared;
 }
 
 }  // namespace ptin::tools

@@ -112,17 +112,23 @@ void check_on_terrain(const Region& region, const StoreFacts& facts, const std::
               option);
 }
 
-Window window_of(const std::vector<double>& numbers, const std::string& option) {
+Window window_of(std::span<const double> numbers, const std::string& option, bool may_turn) {
+  if (numbers.size() != 4 && !(may_turn && numbers.size() == 6)) {
+    refuse("a window has four numbers: xmin, ymin, xmax, ymax (west, south, east, north)", option);
+  }
   for (const double number : numbers) {
     if (!std::isfinite(number)) refuse("a region's coordinates must be finite numbers", option);
   }
-  if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
-    throw Error(ErrorCode::invalid_argument,
-                "the window is inverted; its order is XMIN YMIN XMAX YMAX with XMIN <= XMAX and "
-                "YMIN <= YMAX",
-                option);
+  const std::size_t half = numbers.size() / 2;
+  const Window window{numbers[0], numbers[1], numbers[half], numbers[half + 1]};
+  constexpr double kHalfCircle = 180;
+  const bool turns = may_turn && std::abs(window.min_x) <= kHalfCircle &&
+                     std::abs(window.max_x) <= kHalfCircle &&
+                     window.min_x - window.max_x >= kHalfCircle;
+  if ((window.min_x > window.max_x && !turns) || window.min_y > window.max_y) {
+    refuse(kInverted, option);
   }
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+  return window;
 }
 
 }  // namespace ptin::tools

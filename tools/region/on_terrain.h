@@ -28,8 +28,14 @@ void check_on_terrain(const Region& region, const StoreFacts& facts, const std::
                                                       const StoreFacts& facts, const CrsFacts& crs);
 
 /// The window of four numbers.
-/// @param option  Gave the numbers; named in errors.
-/// @throws Error invalid_argument  a number is not finite, or the window is inverted
-[[nodiscard]] Window window_of(const std::vector<double>& numbers, const std::string& option);
+/// @param option    Gave the numbers; named in errors.
+/// @param may_turn  West may be larger than east, by half a circle at least: across the antimeridian.
+///                  Then there may be six numbers too, of which the third and the last are heights.
+/// @throws Error invalid_argument  there are not so many, one is not finite, the window is inverted
+[[nodiscard]] Window window_of(std::span<const double> numbers, const std::string& option,
+                               bool may_turn = false);
+/// Said of a window whose sides stand the wrong way round.
+inline constexpr const char* kInverted =
+    "the window is inverted; its order is xmin, ymin, xmax, ymax: west, south, east, north";
 
 }  // namespace ptin::tools

@@ -6,18 +6,12 @@
 #include <cmath>
 
 #include "engine/crs/border_move.h"
-#include "engine/error.h"
-#include "engine/stop.h"
-#include "tools/formats/number_text.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
 
 namespace ptin::serve {
 
 namespace {
-
-constexpr std::size_t kFirstBytes = 4096;      ///< Of a long text.
-constexpr std::size_t kLookBytes = 64 * 1024;  ///< Between two looks at the stop token.
 
 /// How much a client likes a media type, and how closely it names it: 3 by its name, 2 by "text/*",
 /// 1 by "*/*", 0 not at all.
@@ -35,7 +29,7 @@ std::string lower_case(std::string_view text) {
 /// The part of a list before the next mark, without blanks; the list loses it.
 std::string_view next_part(std::string_view& list, char mark) {
   const std::size_t end = std::min(list.find(mark), list.size());
-  const std::string_view part = trimmed(list.substr(0, end));
+  const std::string_view part = ask::trimmed(list.substr(0, end));
   list.remove_prefix(std::min(end + 1, list.size()));
   return part;
 }
@@ -54,7 +48,7 @@ Liking named_liking_of(std::string_view accept, std::string_view media) {
     while (!range.empty()) {
       const std::string_view parameter = next_part(range, ';');
       if (parameter.starts_with("q="))
-        liking.quality = number_of(parameter.substr(2)).value_or(0.0);
+        liking.quality = ask::number_in(parameter.substr(2)).value_or(0.0);
     }
   }
   return liking;
@@ -75,91 +69,7 @@ Liking liking_of(std::string_view accept, std::string_view media) {
   return {liking.quality, takes_anything ? 1 : liking.closeness};
 }
 
-}  // namespace
-
-const OfferedFormat& format_of(const Asked& asked, std::span<const OfferedFormat> offered) {
-  if (asked.question.has("f")) {
-    std::vector<std::string_view> names;
-    for (const OfferedFormat& format : offered) names.push_back(format.name);
-    const std::string_view chosen = asked.question.choice("f", names);
-    for (const OfferedFormat& format : offered) {
-      if (format.name == chosen) return format;
-    }
-  }
-  const std::string accept = lower_case(http::list_of(asked.request, "accept"));
-  const OfferedFormat* best = &offered.front();
-  Liking most;
-  for (const OfferedFormat& format : offered) {
-    const Liking liking = liking_of(accept, format.media);
-    const bool is_liked_more =
-        liking.quality > most.quality ||
-        (liking.quality == most.quality && liking.quality > 0 && liking.closeness > most.closeness);
-    if (!is_liked_more) continue;
-    most = liking;
-    best = &format;
-  }
-  return *best;
-}
-
-void add_choice(http::Response& response, const Asked& asked) {
-  if (!asked.question.has("f")) response.add("Vary", "Accept");
-}
-
-void LongText::make_room(std::size_t bytes) {
-  const std::size_t needed = text_.size() + bytes;
-  if (needed > most_bytes_) {
-    throw Error(ErrorCode::resource_exhausted, "the text of the answer takes more than its memory");
-  }
-  if (needed > text_.capacity()) {
-    text_.reserve(std::min(most_bytes_, std::max({needed, 2 * text_.capacity(), kFirstBytes})));
-  }
-  if (needed < next_look_) return;
-  stop_if_asked(stop_, "the answer");
-  next_look_ = needed + kLookBytes;
-}
-
-LongText& LongText::add(std::string_view text) {
-  make_room(text.size());
-  text_ += text;
-  return *this;
-}
-
-LongText& LongText::number(double value) {
-  constexpr std::size_t kMostDigits = 32;
-  make_room(kMostDigits);
-  append_json_number(text_, value);
-  return *this;
-}
-
-LongText& LongText::json(const Json& value) {
-  return add(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-QueryLimits engine_limits(const Asked& asked, std::uint64_t answer_bytes) {
-  QueryLimits limits = asked.limits;
-  limits.memory_bytes -= std::min<std::uint64_t>(limits.memory_bytes / 2, answer_bytes);
-  return limits;
-}
-
-http::Response json_response(const Json& json, std::string_view media) {
-  return text_response(json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n", media);
-}
-
-http::Response text_response(std::string text, std::string_view media) {
-  http::Response response;
-  response.content_type = media;
-  response.body = std::move(text);
-  return response;
-}
-
-void append_json_number(std::string& text, double value) {
-  if (std::isfinite(value)) {
-    tools::append_number(text, value);
-  } else {
-    text += "null";
-  }
-}
-
+/// Adds what an answer cost, as Server-Timing.
 void add_cost(http::Response& response, const QueryCost& cost) {
   std::string value = "query;dur=";
   append_json_number(value, std::round(1e5 * cost.seconds) / 1e2);
@@ -176,38 +86,96 @@ void add_cost(http::Response& response, const QueryCost& cost) {
   response.add("Server-Timing", std::move(value));
 }
 
-void add_certainty(http::Response& response, double certified_error, bool exact) {
+}  // namespace
+
+const ask::Format& format_of(const Asked& asked) {
+  if (!asked.question.text("f").empty()) {
+    std::string chosen;
+    asked.question.read(std::vector{ask::format_row(chosen, asked.formats)});
+    for (const ask::Format& format : asked.formats) {
+      if (format.name == chosen) return format;
+    }
+  }
+  const std::string accept = lower_case(http::list_of(asked.request, "accept"));
+  const ask::Format* best = &asked.formats.front();
+  Liking most;
+  for (const ask::Format& format : asked.formats) {
+    const Liking liking = liking_of(accept, format.media);
+    const bool is_liked_more =
+        liking.quality > most.quality ||
+        (liking.quality == most.quality && liking.quality > 0 && liking.closeness > most.closeness);
+    if (!is_liked_more) continue;
+    most = liking;
+    best = &format;
+  }
+  return *best;
+}
+
+ask::LongText long_text(const Asked& asked) {
+  return LongText(asked.limits.memory_bytes / 2, asked.limits.stop);
+}
+
+QueryLimits engine_limits(const Asked& asked, std::uint64_t answer_bytes) {
+  QueryLimits limits = asked.limits;
+  limits.memory_bytes -= std::min<std::uint64_t>(limits.memory_bytes / 2, answer_bytes);
+  return limits;
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+http::Response json_response(const Json& json, std::string_view media) {
+  return text_response(text_of(json), media);
+}
+
+http::Response text_response(std::string text, std::string_view media) {
+  http::Response response;
+  response.content_type = media;
+  response.body = std::move(text);
+  return response;
+}
+
+http::Response answered(const Asked& asked, std::string text, std::string_view media,
+                        const QueryCost& cost, double certified_error, bool exact) {
+  http::Response response = text_response(std::move(text), media);
+  const bool has_choice = asked.formats.size() > 1 && !asked.formats.front().name.empty();
+  if (has_choice && !asked.question.has("f")) response.add("Vary", "Accept");
+  add_cost(response, cost);
   std::string error;
   append_json_number(error, certified_error);
   response.add("Ptin-Certified-Error", std::move(error));
   response.add("Ptin-Exact", exact ? "true" : "false");
+  return response;
+}
+
+Places places_of(const Asked& asked, const std::string& crs) {
+  return {asked.collection->crs, crs, asked.collection->bounds, asked.request.share};
 }
 
 Json certainty_json(const Asked& asked, double certified_error, double certified_deviation,
                     bool exact) {
-  const CrsFacts& crs = asked.collection->crs;
-  Json json = {{"certified_error", certified_error},
-               {"certified_deviation", certified_deviation},
-               {"exact", exact},
-               {"unit", crs.vertical_unit}};
-  const double moved = border_moved_at_most(asked.terrain().store(), certified_error);
-  json["border_moved_at_most"] = std::isfinite(moved) ? Json(moved) : Json();
+  Json json = Json::object();
+  put(json,
+      ask::AnswerFacts{certified_error, certified_deviation,
+                       border_moved_at_most(asked.terrain().store(), certified_error), exact,
+                       &asked.collection->crs},
+      ask::Door::kService);
   return json;
 }
 
-DetailRequest detail_of(const Asked& asked) {
-  const DetailRequest detail = asked.question.detail();
+void check_detail(const Asked& asked, const DetailRequest& detail) {
   const std::size_t least = asked.terrain().store().t0().vertices.size();
-  if (!detail.vertices || *detail.vertices >= least) return detail;
+  if (!detail.vertices || *detail.vertices >= least) return;
   throw http::Problem(400, "the coarsest TIN has " + std::to_string(least) +
                                " vertices; ask for at least that many")
       .at("vertices");
 }
 
-std::optional<Window> window_on_terrain(const Asked& asked, const Places& places) {
-  const std::optional<Window> given = asked.question.bbox();
-  if (!given) return std::nullopt;
-  const Window window = places.to_terrain(*given);
+std::optional<Window> window_on_terrain(const Asked& asked, const Places& places,
+                                        const std::optional<Window>& bbox) {
+  if (!bbox) return std::nullopt;
+  const Window window = places.to_terrain(*bbox);
   const StoreFacts& facts = asked.facts();
   if (GridRegion(window, facts.map).meets(facts.bounds)) return window;
   std::string text = "this window misses the terrain";

@@ -13,35 +13,54 @@ namespace ptin::serve {
 
 namespace {
 
-Json schema_of(const ParameterFact& fact) {
-  if (fact.type != "array") return {{"type", fact.type}};
-  return {{"type", "string"}, {"description", "numbers between commas, or JSON"}};
+/// The numbers of a range, as a schema tells them.
+void add_range(Json& schema, const ask::Parameter& row) {
+  const bool is_whole = ask::is_whole(row);
+  const double least = is_whole ? std::max(0.0, row.range.least) : row.range.least;
+  if (least > ask::kFinite.least) schema["minimum"] = least;
+  if (row.range.is_above) schema["exclusiveMinimum"] = true;
+  if (row.range.most < ask::kFinite.most) schema["maximum"] = row.range.most;
+}
+
+Json schema_of(const ask::Parameter& row) {
+  if (ask::is_flag(row)) return {{"type", "boolean"}};
+  if (ask::is_text(row)) {
+    Json schema = {{"type", "string"}};
+    for (const std::string_view choice : row.choices) schema["enum"].push_back(choice);
+    return schema;
+  }
+  Json number = {{"type", ask::is_whole(row) ? "integer" : "number"}};
+  add_range(number, row);
+  if (!ask::is_list(row)) return number;
+  Json schema = {{"type", "array"}, {"items", std::move(number)}, {"minItems", row.least_values}};
+  if (row.most_values != ask::kAnyNumberOfValues) schema["maxItems"] = row.most_values;
+  return schema;
 }
 
 /// The example as a value of the parameter's type.
-Json example_of(const ParameterFact& fact) {
-  const bool is_text = fact.type == "string" || fact.type == "array";
-  return is_text ? Json(fact.example) : Json::parse(fact.example);
+Json example_of(const ask::Parameter& row) {
+  const std::string example(row.example);
+  if (ask::is_list(row)) return Json::parse("[" + example + "]");
+  return ask::is_text(row) ? Json(example) : Json::parse(example);
 }
 
-Json parameter_json(const ParameterFact& fact) {
-  Json json = {{"name", fact.name},
+Json parameter_json(const ask::Parameter& row) {
+  Json json = {{"name", row.name},
                {"in", "query"},
-               {"required", fact.is_required},
-               {"description", fact.about},
-               {"schema", schema_of(fact)}};
-  if (!fact.example.empty()) json["example"] = example_of(fact);
+               {"required", is_at(row.required, ask::Door::kService)},
+               {"description", ask::help_at(row, ask::Door::kService)},
+               {"schema", schema_of(row)}};
+  if (ask::is_list(row)) json["explode"] = false;  // Values stand between commas.
+  if (!row.example.empty()) json["example"] = example_of(row);
   return json;
 }
 
 /// Responses: 200 in each of its types, and problems.
 Json responses_of(const Endpoint& endpoint) {
   Json content = Json::object();
-  std::string_view media = endpoint.media;
-  while (!media.empty()) {
-    const std::size_t end = std::min(media.find(' '), media.size());
-    content[std::string(media.substr(0, end))] = Json::object();
-    media.remove_prefix(std::min(end + 1, media.size()));
+  for (const ask::Format& format : endpoint.formats) {
+    const std::string_view media = format.media.substr(0, format.media.find("; charset"));
+    content[std::string(media)] = Json::object();
   }
   Json responses = {{"200", {{"description", endpoint.about}, {"content", std::move(content)}}},
                     {"4XX", {{"$ref", "#/components/responses/Problem"}}}};
@@ -55,13 +74,14 @@ Json responses_of(const Endpoint& endpoint) {
 /// The parameters as members of an object, or as fields of a form.
 Json body_of(const Endpoint& endpoint) {
   Json schema = {{"type", "object"}, {"properties", Json::object()}};
-  for (const ParameterFact& fact : endpoint.parameters) {
-    Json property = {{"description", fact.about}};
-    // An array may be one of JSON too, or text: no one type says so.
-    if (fact.type != "array") property["type"] = fact.type;
-    if (!fact.example.empty()) property["example"] = example_of(fact);
-    schema["properties"][std::string(fact.name)] = std::move(property);
-    if (fact.is_required) schema["required"].push_back(fact.name);
+  for (const ask::Parameter& row : endpoint.parameters) {
+    if (!is_at(row.doors, ask::Door::kService)) continue;
+    // A value of JSON may be text, too: no one type says so.
+    Json property = row.is_json ? Json::object() : schema_of(row);
+    property["description"] = ask::help_at(row, ask::Door::kService);
+    if (!row.example.empty()) property["example"] = example_of(row);
+    schema["properties"][std::string(row.name)] = std::move(property);
+    if (is_at(row.required, ask::Door::kService)) schema["required"].push_back(row.name);
   }
   return {{"content",
            {{"application/json", {{"schema", schema}}},
@@ -80,8 +100,10 @@ Json operation_of(const Endpoint& endpoint, bool is_post) {
         {{"name", name}, {"in", "path"}, {"required", true}, {"schema", {{"type", "string"}}}});
   }
   if (!is_post) {
-    for (const ParameterFact& fact : endpoint.parameters) {
-      operation["parameters"].push_back(parameter_json(fact));
+    for (const ask::Parameter& row : endpoint.parameters) {
+      if (is_at(row.doors, ask::Door::kService)) {
+        operation["parameters"].push_back(parameter_json(row));
+      }
     }
     return operation;
   }
@@ -127,12 +149,9 @@ Json refusal_response() {
 
 }  // namespace
 
-http::Response answer_api(const Asked& asked) {
-  static constexpr auto kFormats =
-      std::to_array<OfferedFormat>({{"json", "application/vnd.oai.openapi+json;version=3.0"}});
-  const OfferedFormat& format = format_of(asked, kFormats);
+Json openapi(std::span<const Endpoint> all, const ServeOptions& options) {
   Json paths = Json::object();
-  for (const Endpoint& endpoint : endpoints()) {
+  for (const Endpoint& endpoint : all) {
     std::string path(endpoint.path);
     if (path.ends_with('*')) path.replace(path.size() - 1, 1, "{path}");
     paths[path]["get"] = operation_of(endpoint, false);
@@ -141,22 +160,25 @@ http::Response answer_api(const Asked& asked) {
   Json security = Json::array();
   Json components = {
       {"responses", {{"Problem", problem_response()}, {"Refusal", refusal_response()}}}};
-  if (!asked.options.token.empty()) {
+  if (!options.token.empty()) {
     security.push_back({{"bearer", Json::array()}});
     components["securitySchemes"] = {{"bearer", {{"type", "http"}, {"scheme", "bearer"}}}};
   }
-  return json_response(
-      {{"openapi", "3.0.3"},
-       {"info",
-        {{"title", "Terrains"},
-         {"version", asked.options.version},
-         {"license",
-          {{"name", "GPL-3.0-or-later"}, {"url", "https://www.gnu.org/licenses/gpl-3.0.html"}}}}},
-       {"servers", Json::array({{{"url", "/"}}})},
-       {"security", std::move(security)},
-       {"paths", std::move(paths)},
-       {"components", std::move(components)}},
-      format.media);
+  return {
+      {"openapi", "3.0.3"},
+      {"info",
+       {{"title", "Terrains"},
+        {"version", options.version},
+        {"license",
+         {{"name", "GPL-3.0-or-later"}, {"url", "https://www.gnu.org/licenses/gpl-3.0.html"}}}}},
+      {"servers", Json::array({{{"url", "/"}}})},
+      {"security", std::move(security)},
+      {"paths", std::move(paths)},
+      {"components", std::move(components)}};
+}
+
+http::Response answer_api(const Asked& asked) {
+  return json_response(openapi(endpoints(), asked.options), format_of(asked).media);
 }
 
 }  // namespace ptin::serve

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/stop.h"
+#include "tools/ask/locate.h"
 #include "tools/facts/source_count.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
@@ -21,25 +22,33 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr auto kAreaParameters = std::to_array<ParameterFact>(
-    {{"coords", "string", "the area as WKT, POLYGON or MULTIPOLYGON",
-      "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))", true},
-     {"resolution-x", "integer",
-      "positions along x, both ends included; 0: those of the terrain's samples; without it as "
-      "many "
-      "as make squares with those along y, or 65 along the longer side",
-      "50"},
-     {"resolution-y", "integer", "the same along y", "50"},
-     kErrorParameter,
-     kVerticesParameter,
-     kCrsParameter,
-     kNamesParameter,
-     kDatetimeParameter,
-     kZParameter,
-     {"f", "string", "covjson (the grid), geojson or csv (its positions within the area)",
-      "covjson"}});
-constexpr auto kAreaFormats = std::to_array<OfferedFormat>(
-    {{"covjson", kCoverageJson}, {"geojson", kGeoJson}, {"csv", kCsv}});
+constexpr const char *kColumns = "resolution-x", *kRows = "resolution-y";
+
+struct AreaQuestion {
+  LocateRequest request;
+  std::string coords, crs;
+  std::optional<std::uint64_t> columns, rows;
+  CoverageNames names;
+};
+
+ask::Parameters parameters_of(AreaQuestion& question) {
+  ask::Parameters rows;
+  rows.push_back(
+      ask::coords_row(question.coords, "The area as WKT, POLYGON or MULTIPOLYGON",
+                      "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))"));
+  rows.add(kColumns, &question.columns, "",
+           "Positions along x, both ends included; 0: those of the terrain's samples; "
+           "without it as many as make squares with those along y, or 65 along the "
+           "longer side")
+      .at(ask::Door::kService)
+      .like("50");
+  rows.add(kRows, &question.rows, "", "The same along y").at(ask::Door::kService).like("50");
+  ask::add_locate(rows, question.request);
+  rows.push_back(ask::crs_row(question.crs));
+  add_coverage_rows(rows, question.names);
+  return rows;
+}
+
 constexpr double kStepsOfGrid = 64;
 
 /// Positions at equal steps along a side of a grid: `count` of them from `first` to `last`.
@@ -82,8 +91,8 @@ std::size_t corners_of(const Polygon& polygon) {
 }
 
 /// The polygon that `coords` holds. Across the antimeridian its longitudes go on beyond 180.
-Polygon polygon_of(const Asked& asked, const Places& places) {
-  Polygon polygon = polygon_of_wkt(asked.question.needed("coords"), "coords");
+Polygon polygon_of(const Asked& asked, const std::string& coords, const Places& places) {
+  Polygon polygon = polygon_of_wkt(coords, "coords");
   check_count(corners_of(polygon), asked.options.question.points, "positions", "points", "coords");
   for (auto& ring : polygon.rings) places.go_on(ring, polygon.rings[0][0].x);
   return polygon;
@@ -126,14 +135,16 @@ struct StoredSample {
   MapPoint at, step;
 };
 
-StoredSample stored_sample(const Asked& asked, const Places& places, const Window& box) {
+/// @param parameter  Asks for it.
+StoredSample stored_sample(const Asked& asked, const Places& places, const Window& box,
+                           const char* parameter) {
   const std::optional<MapPoint> pixel = tools::own_pixel_of(asked.terrain().store());
   if (!pixel) {
     throw http::Problem(
         400,
         "this terrain was not built from a raster and has no resolution of its own; "
         "ask for a number of positions")
-        .at(asked.question.count("resolution-x") == 0 ? "resolution-x" : "resolution-y");
+        .at(parameter);
   }
   const AffineMap& map = asked.facts().map;
   const MapPoint middle{(box.min_x + box.max_x) / 2, (box.min_y + box.max_y) / 2};
@@ -148,18 +159,18 @@ StoredSample stored_sample(const Asked& asked, const Places& places, const Windo
            std::max(std::abs(east.y - here.y), std::abs(north.y - here.y))}};
 }
 
-Grid grid_of(const Asked& asked, const Places& places, const Polygon& polygon) {
-  constexpr const char *kX = "resolution-x", *kY = "resolution-y";
+Grid grid_of(const Asked& asked, const AreaQuestion& question, const Places& places,
+             const Polygon& polygon) {
   const Window box = box_of(polygon);
   const double width = box.max_x - box.min_x, height = box.max_y - box.min_y;
-  std::optional<std::uint64_t> columns = asked.question.count(kX), rows = asked.question.count(kY);
+  std::optional<std::uint64_t> columns = question.columns, rows = question.rows;
   if (!columns && rows == 0U) columns = 0;
   if (!rows && columns == 0U) rows = 0;
   Grid grid{{box.min_x, box.max_x}, {box.min_y, box.max_y}};
   if (columns == 0U || rows == 0U) {
-    const StoredSample sample = stored_sample(asked, places, box);
-    if (columns == 0U) grid.x = stored_side(asked, kX, grid.x, sample.at.x, sample.step.x);
-    if (rows == 0U) grid.y = stored_side(asked, kY, grid.y, sample.at.y, sample.step.y);
+    const StoredSample sample = stored_sample(asked, places, box, columns == 0U ? kColumns : kRows);
+    if (columns == 0U) grid.x = stored_side(asked, kColumns, grid.x, sample.at.x, sample.step.x);
+    if (rows == 0U) grid.y = stored_side(asked, kRows, grid.y, sample.at.y, sample.step.y);
   }
   // Squares, of the side that is told, or else of a step along the longer one.
   double step = std::max(width, height) / kStepsOfGrid;
@@ -167,14 +178,15 @@ Grid grid_of(const Asked& asked, const Places& places, const Polygon& polygon) {
   if (rows > 1U) step = height / static_cast<double>(*rows - 1);
   if (columns != 0U) {
     const double otherwise = steps_of(width, step) + 1;
-    grid.x.count = checked_count(asked, kX, columns ? static_cast<double>(*columns) : otherwise);
+    grid.x.count =
+        checked_count(asked, kColumns, columns ? static_cast<double>(*columns) : otherwise);
   }
   if (rows != 0U) {
     const double otherwise = steps_of(height, step) + 1;
-    grid.y.count = checked_count(asked, kY, rows ? static_cast<double>(*rows) : otherwise);
+    grid.y.count = checked_count(asked, kRows, rows ? static_cast<double>(*rows) : otherwise);
   }
   check_count(grid.x.count * grid.y.count, asked.options.question.points, "positions", "points",
-              kX);
+              kColumns);
   return grid;
 }
 
@@ -235,21 +247,20 @@ Coverage coverage_of(const Grid& grid, const Inner& inner, const LocateResult& r
 
 }  // namespace
 
-std::span<const ParameterFact> area_parameters() noexcept { return kAreaParameters; }
+ask::Parameters area_parameters() { return described<AreaQuestion>(); }
 
 http::Response answer_area(const Asked& asked) {
-  static_cast<void>(asked_names(asked.question));
-  const OfferedFormat& format = format_of(asked, kAreaFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  const Polygon polygon = polygon_of(asked, places);
-  const Grid grid = grid_of(asked, places, polygon);
+  const ask::Format& format = format_of(asked);
+  auto question = read<AreaQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  const Polygon polygon = polygon_of(asked, question.coords, places);
+  const Grid grid = grid_of(asked, question, places, polygon);
   Inner inner = inner_of(asked, grid, polygon);
   std::vector<MapPoint> at = inner.at;
   places.to_terrain(at);
   places.wrap(inner.at);
-  LocateRequest request;
-  request.detail = detail_of(asked);
+  LocateRequest& request = question.request;
+  check_detail(asked, request.detail);
   request.limits = engine_limits(asked, inner.number.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
@@ -259,14 +270,11 @@ http::Response answer_area(const Asked& asked) {
   } else if (format.name == "geojson") {
     text = points_geojson(asked, inner.at, result);
   } else {
-    text =
-        coverage_text(asked, places, coverage_of(grid, inner, result), certainty_of(asked, result));
+    text = coverage_text(asked, places, question.names, coverage_of(grid, inner, result),
+                         certainty_of(asked, result));
   }
-  http::Response response = text_response(std::move(text), format.media);
-  add_choice(response, asked);
-  add_cost(response, result.cost);
-  add_certainty(response, result.certified_error, result.exact);
-  return response;
+  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
+                  result.exact);
 }
 
 }  // namespace ptin::serve

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/stop.h"
+#include "tools/facts/human.h"
 #include "tools/http/problem.h"
 
 namespace ptin::serve {
@@ -37,7 +38,7 @@ class Builder : public nlohmann::json::json_sax_t {
 
   bool key(std::string& name) override {
     if (open_.back()->contains(name)) {
-      throw Problem(400, "the member " + http::shown(name) + " of the JSON is given twice")
+      throw Problem(400, "the member " + tools::shown(name) + " of the JSON is given twice")
           .at(name_);
     }
     member_ = std::move(name);

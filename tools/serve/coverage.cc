@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "tools/facts/answers.h"
-#include "tools/http/problem.h"
+#include "engine/error.h"
+#include "tools/ask/locate.h"
+#include "tools/facts/human.h"
 
 namespace ptin::serve {
 
@@ -19,6 +20,23 @@ constexpr std::array kStates = {StateName{"surface", "surface"}, StateName{"void
                                 StateName{"outside", "outside of the terrain"},
                                 StateName{"outside of the polygon", "outside of the polygon"}};
 constexpr std::array<std::string_view, 4> kNames = {"height", "height_min", "height_max", "state"};
+
+/// @throws Error invalid_argument  another name
+CoverageNames names_in(std::string_view given) {
+  CoverageNames names;
+  while (!given.empty()) {
+    const std::size_t end = std::min(given.find(','), given.size());
+    const std::string_view name = ask::trimmed(given.substr(0, end));
+    const auto* const known = std::find(kNames.begin(), kNames.end(), name);
+    if (known == kNames.end()) {
+      refuse("\"" + tools::shown(name) +
+             "\" is no parameter of this coverage; it has height, height_min, height_max, state");
+    }
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(*known);
+    given.remove_prefix(std::min(end + 1, given.size()));
+  }
+  return names;
+}
 
 Json number_parameter(const char* what, const std::string& unit) {
   return {{"type", "Parameter"},
@@ -125,33 +143,28 @@ Json coverage_parameters(const std::string& unit) {
           {"state", state_parameter()}};
 }
 
-std::vector<std::string_view> asked_names(const Question& question) {
-  std::vector<std::string_view> names;
-  std::string_view given = question.text("parameter-name");
-  while (!given.empty()) {
-    const std::size_t end = std::min(given.find(','), given.size());
-    const std::string_view name = trimmed(given.substr(0, end));
-    const auto* const known = std::find(kNames.begin(), kNames.end(), name);
-    if (known == kNames.end()) {
-      throw http::Problem(400, "\"" + std::string(name) +
-                                   "\" is no parameter of this coverage; it has height, "
-                                   "height_min, height_max, state")
-          .at("parameter-name");
-    }
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(*known);
-    given.remove_prefix(std::min(end + 1, given.size()));
-  }
-  if (names.empty()) names.assign(kNames.begin(), kNames.end());
-  return names;
+void add_coverage_rows(ask::Parameters& rows, CoverageNames& names) {
+  rows.add(
+          "parameter-name", [&names](const std::string& text) { names = names_in(text); }, "",
+          "height, height_min, height_max, state, or several between commas; all "
+          "without it. CoverageJSON holds these alone, other formats all")
+      .at(ask::Door::kService)
+      .like("height,state");
+  rows.push_back(
+      ask::ignored_row("datetime", "Accepted and without effect: a terrain has no time"));
+  rows.push_back(
+      ask::ignored_row("z", "Accepted and without effect: a surface has one height at a position"));
 }
 
-std::string coverage_text(const Asked& asked, const Places& places, const Coverage& coverage,
+std::string coverage_text(const Asked& asked, const Places& places,
+                          const CoverageNames& asked_names, const Coverage& coverage,
                           const Json& certainty) {
-  const std::vector<std::string_view> names = asked_names(asked.question);
+  CoverageNames names = asked_names;
+  if (names.empty()) names.assign(kNames.begin(), kNames.end());
   const Json all = coverage_parameters(asked.collection->crs.vertical_unit);
   Json parameters = Json::object();
   for (const std::string_view name : names) parameters[std::string(name)] = all[std::string(name)];
-  LongText text(asked);
+  LongText text = long_text(asked);
   text.add(R"({"type":"Coverage","domain":)");
   add_domain(text, coverage, places);
   text.add(",\"parameters\":").json(parameters).add(",\"ranges\":{");
@@ -168,26 +181,18 @@ void add_point(LongText& text, const MapPoint& p) {
   text.add("}");
 }
 
-void add_members(LongText& text, const LocatedPoint& p) {
-  text.add("\"state\":\"").add(tools::name_of(p.state)).add("\",\"height\":").number(p.height);
-  text.add(",\"height_min\":").number(p.height_min);
-  text.add(",\"height_max\":").number(p.height_max);
-}
-
-Json certainty_of(const Asked& asked, const LocateResult& result) {
-  return certainty_json(asked, result.certified_error, result.certified_deviation, result.exact);
-}
-
 std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
                            const LocateResult& result) {
-  LongText text(asked);
+  const auto columns =
+      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kFeature);
+  LongText text = long_text(asked);
   text.add(R"({"type":"FeatureCollection","features":[)");
   for (std::size_t i = 0; i < client.size(); ++i) {
     text.add(i == 0 ? R"({"type":"Feature","geometry":)" : R"(,{"type":"Feature","geometry":)");
     add_point(text, client[i]);
-    text.add(",\"properties\":{");
-    add_members(text, result.points[i]);
-    text.add("}}");
+    text.add(",\"properties\":");
+    ask::add_object(text, columns, ask::LocatedRow(client[i], result.points[i], asked.facts().map));
+    text.add("}");
   }
   text.add("],\"ptin:certainty\":").json(certainty_of(asked, result));
   return text.add("}\n").take();
@@ -195,16 +200,13 @@ std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
 
 std::string points_csv(const Asked& asked, std::span<const MapPoint> client,
                        const LocateResult& result) {
-  LongText text(asked);
-  text.add("x,y,state,height,height_min,height_max\n");
+  const auto columns =
+      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kTableRow);
+  LongText text = long_text(asked);
+  ask::add_csv_heading(text, columns);
   for (std::size_t i = 0; i < client.size(); ++i) {
-    const LocatedPoint& p = result.points[i];
-    text.number(client[i].x).add(",").number(client[i].y).add(",").add(tools::name_of(p.state));
-    for (const double value : {p.height, p.height_min, p.height_max}) {
-      text.add(",");
-      if (value == value) text.number(value);
-    }
-    text.add("\n");
+    ask::add_csv_row(text, columns,
+                     ask::LocatedRow(client[i], result.points[i], asked.facts().map));
   }
   return text.take();
 }

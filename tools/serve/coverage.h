@@ -17,9 +17,6 @@
 
 namespace ptin::serve {
 
-constexpr auto kPlaceFormats = std::to_array<OfferedFormat>(
-    {{"covjson", kCoverageJson}, {"geojson", kGeoJson}, {"csv", kCsv}, {"json", kJson}});
-
 /// What a coverage knows of a position.
 enum class CoverageState : std::uint8_t { kSurface, kVoid, kOutside, kLeftOut };
 struct CoverageValue {
@@ -38,6 +35,11 @@ struct Coverage {
   std::function<CoverageValue(std::size_t)> value;
 };
 
+/// The names that `parameter-name` holds; empty: all that there are.
+using CoverageNames = std::vector<std::string_view>;
+/// `parameter-name`, and what OGC's clients ask with that has no effect.
+void add_coverage_rows(ask::Parameters& rows, CoverageNames& names);
+
 /// Point or MultiPoint.
 [[nodiscard]] Coverage coverage_at(std::span<const MapPoint> positions,
                                    std::function<CoverageValue(std::size_t)> value);
@@ -49,11 +51,8 @@ struct Coverage {
 /// height_max as numbers, `state` as 0 surface, 1 void, 2 outside of the terrain, 3 outside of the
 /// polygon that was asked for. A height is null where the state is not 0, and nowhere else.
 [[nodiscard]] std::string coverage_text(const Asked& asked, const Places& places,
-                                        const Coverage& coverage, const Json& certainty);
-
-/// The names that `parameter-name` holds, all that there are without it.
-/// @throws http::Problem 400  another name
-[[nodiscard]] std::vector<std::string_view> asked_names(const Question& question);
+                                        const CoverageNames& names, const Coverage& coverage,
+                                        const Json& certainty);
 
 /// Heights at positions as GeoJSON and as CSV.
 [[nodiscard]] std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
@@ -62,8 +61,5 @@ struct Coverage {
                                      const LocateResult& result);
 /// The object of GeoJSON that stands for a position: {"type":"Point","coordinates":[x,y]}.
 void add_point(LongText& text, const MapPoint& p);
-/// The members state, height, height_min, height_max of an object.
-void add_members(LongText& text, const LocatedPoint& p);
-[[nodiscard]] Json certainty_of(const Asked& asked, const LocateResult& result);
 
 }  // namespace ptin::serve

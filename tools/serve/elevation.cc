@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/facts/answers.h"
+#include "tools/ask/locate.h"
+#include "tools/facts/human.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/geodesic_path.h"
@@ -24,42 +25,64 @@ namespace {
 
 using http::Problem;
 
-/// A parameter that others' clients, and libraries below them, put into every request.
-constexpr ParameterFact ignored(std::string_view name) {
-  return {name, "string", "accepted and without effect"};
+struct ElevationQuestion {
+  std::string locations, path, nodata, format = "json";
+  std::optional<std::uint64_t> samples;
+  std::optional<double> error;  ///< Metres.
+};
+
+ask::Parameters parameters_of(ElevationQuestion& question) {
+  constexpr ask::Door kService = ask::Door::kService;
+  ask::Parameters rows;
+  rows.add("locations", &question.locations, "",
+           "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array "
+           "of [lat, lng] too")
+      .at(kService)
+      .as_json()
+      .like("34.34,-118.3|34.35,-118.29");
+  rows.add("path", &question.path, "",
+           "Positions instead of locations; with samples, positions along it")
+      .at(kService)
+      .as_json();
+  rows.add("samples", &question.samples, "",
+           "Positions at equal distances along the path or the locations, by the "
+           "shortest way over ground")
+      .at(kService)
+      .like("10");
+  rows.push_back(ask::ignored_row("interpolation", "Accepted and without effect: a TIN is linear",
+                                  "bilinear"));
+  rows.add("nodata_value", &question.nodata, "",
+           "What stands for no elevation: null, nan or a whole number")
+      .at(kService)
+      .like("null");
+  rows.add("format", &question.format, "", "json or geojson")
+      .of({"json", "geojson"})
+      .at(kService)
+      .like("json");
+  // What others' clients, and libraries below them, put into every request.
+  for (const char* name : {"key", "client", "signature", "channel", "solution_channel", "sensor",
+                           "language", "region", "units", "_"}) {
+    rows.push_back(ask::ignored_row(name, "Accepted and without effect"));
+  }
+  rows.add("error", &question.error, "",
+           "Certified error allowed, in metres; without it: full detail")
+      .within(ask::kNotNegative)
+      .at(kService)
+      .like("5");
+  return rows;
 }
 
-constexpr auto kElevationParameters = std::to_array<ParameterFact>(
-    {{"locations", "string",
-      "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array of [lat, lng] too",
-      "34.34,-118.3|34.35,-118.29"},
-     {"path", "string", "instead of locations; with samples, positions along it"},
-     {"samples", "integer",
-      "positions at equal distances along the path or the locations, by the shortest way over "
-      "ground",
-      "10"},
-     {"interpolation", "string", "accepted and without effect: a TIN is linear", "bilinear"},
-     {"nodata_value", "string", "what stands for no elevation: null, nan or a whole number",
-      "null"},
-     {"format", "string", "json or geojson", "json"},
-     ignored("key"),
-     ignored("client"),
-     ignored("signature"),
-     ignored("channel"),
-     ignored("solution_channel"),
-     ignored("sensor"),
-     ignored("language"),
-     ignored("region"),
-     ignored("units"),
-     ignored("_"),
-     {"error", "number", "certified error allowed, in metres; without it: full detail", "5"}});
+std::optional<double> finite_in(std::string_view text) {
+  const std::optional<double> number = ask::number_in(text);
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
 
 /// A position of latitude and longitude, as MapPoint{longitude, latitude}.
 /// @param text  As the client wrote it.
 MapPoint place_at(std::optional<double> lat, std::optional<double> lng, std::string_view text) {
   if (!lat || !lng || std::abs(*lat) > 90 || std::abs(*lng) > 180) {
-    throw Problem(
-        400, "\"" + http::shown(text) + "\" is no position; expected latitude,longitude in degrees")
+    throw Problem(400, "\"" + tools::shown(text) +
+                           "\" is no position; expected latitude,longitude in degrees")
         .at("locations");
   }
   return {*lng, *lat};
@@ -68,8 +91,8 @@ MapPoint place_at(std::optional<double> lat, std::optional<double> lng, std::str
 MapPoint place_of(std::string_view text) {
   const std::size_t comma = text.find(',');
   return place_at(
-      number_of(text.substr(0, comma)),
-      comma == std::string_view::npos ? std::nullopt : number_of(text.substr(comma + 1)), text);
+      finite_in(text.substr(0, comma)),
+      comma == std::string_view::npos ? std::nullopt : finite_in(text.substr(comma + 1)), text);
 }
 
 /// [latitude, longitude], {"lat", "lng"}, {"latitude", "longitude"} or "latitude,longitude".
@@ -111,7 +134,7 @@ std::vector<MapPoint> given_places(const Question& question, const char* name) {
   return places;
 }
 
-std::vector<MapPoint> asked_places(const Asked& asked) {
+std::vector<MapPoint> asked_places(const Asked& asked, const ElevationQuestion& question) {
   const Question& q = asked.question;
   if (q.has("locations") == q.has("path")) {
     throw Problem(400, "give either locations or path, as latitude,longitude between |")
@@ -120,7 +143,7 @@ std::vector<MapPoint> asked_places(const Asked& asked) {
   const std::vector<MapPoint> given = given_places(q, q.has("path") ? "path" : "locations");
   if (given.empty()) throw Problem(400, "no position is given").at("locations");
   check_count(given.size(), asked.options.question.points, "positions", "points", "locations");
-  const std::optional<std::uint64_t> samples = q.count("samples");
+  const std::optional<std::uint64_t>& samples = question.samples;
   if (!samples) return given;
   check_count(static_cast<std::size_t>(*samples), asked.options.question.points, "samples",
               "points", "samples");
@@ -131,12 +154,11 @@ std::vector<MapPoint> asked_places(const Asked& asked) {
 }
 
 /// What stands where there is no elevation.
-Json nodata_of(const Question& question) {
-  const std::string& text = question.text("nodata_value");
+Json nodata_of(const std::string& text) {
   std::string word;
   for (const char c : text) word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (word.empty() || word == "null" || word == "nan") return nullptr;  // JSON has no NaN.
-  if (const std::optional<double> number = number_of(text)) return *number;
+  if (const std::optional<double> number = finite_in(text)) return *number;
   throw Problem(400, "\"" + text + "\" is neither null, nan nor a number").at("nodata_value");
 }
 
@@ -167,18 +189,20 @@ Collections collections_of(const Asked& asked) {
   return collections;
 }
 
-LocateResult locate_in(const Collection& collection, const Asked& asked, std::vector<MapPoint> at) {
+/// @param error  Allowed, in metres.
+LocateResult locate_in(const Collection& collection, const Asked& asked, std::vector<MapPoint> at,
+                       std::optional<double> error) {
   const Places places(collection.crs, "CRS84", collection.bounds);
   places.to_terrain(at, "locations");
   LocateRequest request;
-  request.detail.tolerance = asked.question.detail().tolerance;
-  if (request.detail.tolerance) *request.detail.tolerance /= collection.ground.metres_per_height;
+  if (error) request.detail.tolerance = *error / collection.ground.metres_per_height;
   request.limits = engine_limits(asked, at.size() * kAnswerBytesOfPlace);
   return collection.terrain.locate(at, request);
 }
 
 /// Asks the collections one after the other for what the ones before have no surface at.
-Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_lat) {
+Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_lat,
+                         std::optional<double> error) {
   Elevations found;
   found.points.resize(lon_lat.size());
   found.dataset.resize(lon_lat.size());
@@ -189,7 +213,7 @@ Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_la
     if (open.empty()) break;
     std::vector<MapPoint> at;
     for (const std::size_t i : open) at.push_back(lon_lat[i]);
-    const LocateResult result = locate_in(*collection, asked, std::move(at));
+    const LocateResult result = locate_in(*collection, asked, std::move(at), error);
     found.cost.add_counts(result.cost);
     found.cost.seconds += result.cost.seconds;
     found.exact = found.exact && result.exact;
@@ -210,17 +234,29 @@ Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_la
   return found;
 }
 
+/// What is told of a located point, with heights in metres under the names of others' services.
 Json result_json(const Elevations& found, const std::vector<MapPoint>& lon_lat, std::size_t i,
                  const Json& nodata) {
-  const LocatedPoint& p = found.points[i];
-  const bool has_height = p.state == PointState::kSurface;
-  const double metres = found.metres[i];
-  return {{"elevation", has_height ? Json(p.height * metres) : nodata},
-          {"location", {{"lat", lon_lat[i].y}, {"lng", lon_lat[i].x}}},
-          {"dataset", found.dataset[i]},
-          {"state", tools::name_of(p.state)},
-          {"elevation_min", has_height ? Json(p.height_min * metres) : Json()},
-          {"elevation_max", has_height ? Json(p.height_max * metres) : Json()}};
+  constexpr std::string_view kHeight = "height", kElevation = "elevation";
+  const ask::LocatedRow row(lon_lat[i], found.points[i], {});
+  Json result = {{"elevation", nodata},
+                 {"location", {{"lat", lon_lat[i].y}, {"lng", lon_lat[i].x}}},
+                 {"dataset", found.dataset[i]}};
+  for (const auto* field :
+       ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kFeature)) {
+    std::string name(field->facts.name);
+    Json value = field->value(row);
+    if (name.starts_with(kHeight)) {
+      name.replace(0, kHeight.size(), kElevation);
+      if (row.point.state == PointState::kSurface) {
+        value = value.get<double>() * found.metres[i];
+      } else {
+        value = name == kElevation ? nodata : Json();
+      }
+    }
+    result[name] = std::move(value);
+  }
+  return result;
 }
 
 Json feature_json(Json result) {
@@ -235,14 +271,14 @@ Json feature_json(Json result) {
 
 }  // namespace
 
-std::span<const ParameterFact> elevation_parameters() noexcept { return kElevationParameters; }
+ask::Parameters elevation_parameters() { return described<ElevationQuestion>(); }
 
 http::Response answer_elevation(const Asked& asked) {
-  static constexpr std::array<std::string_view, 2> kElevationFormats = {"json", "geojson"};
-  const bool as_features = asked.question.choice("format", kElevationFormats) == "geojson";
-  const std::vector<MapPoint> lon_lat = asked_places(asked);
-  const Json nodata = nodata_of(asked.question);
-  const Elevations found = elevations_of(asked, lon_lat);
+  const auto question = read<ElevationQuestion>(asked);
+  const bool as_features = question.format == "geojson";
+  const std::vector<MapPoint> lon_lat = asked_places(asked, question);
+  const Json nodata = nodata_of(question.nodata);
+  const Elevations found = elevations_of(asked, lon_lat, question.error);
   Json results = Json::array();
   for (std::size_t i = 0; i < lon_lat.size(); ++i) {
     Json result = result_json(found, lon_lat, i, nodata);
@@ -257,10 +293,8 @@ http::Response answer_elevation(const Asked& asked) {
   } else {
     json.update(certainty);
   }
-  http::Response response = json_response(json, as_features ? kGeoJson : kJson);
-  add_cost(response, found.cost);
-  add_certainty(response, found.certified_error, found.exact);
-  return response;
+  return answered(asked, text_of(json), as_features ? kGeoJson : kJson, found.cost,
+                  found.certified_error, found.exact);
 }
 
 void refuse_elevation(http::Response& refusal) {

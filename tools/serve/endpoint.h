@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "tools/ask/groups.h"
 #include "tools/http/admission.h"
 #include "tools/http/problem.h"
 #include "tools/http/request.h"
@@ -27,6 +28,7 @@ struct Asked {
   const Catalogue& catalogue;
   std::shared_ptr<const Collection> collection;  ///< Null where the path names none.
   std::string_view rest;                         ///< What a `*` of the path stands for.
+  std::span<const ask::Format> formats;          ///< That the question offers.
   QueryLimits limits;  ///< For the engine: the memory that was reserved, the request's stop token.
 
   [[nodiscard]] const Terrain& terrain() const { return collection->terrain; }
@@ -41,8 +43,9 @@ struct Endpoint {
   std::string_view name;  ///< In the log and in metrics: "position".
   bool takes_post;        ///< Beside GET and HEAD.
   std::string_view about;
-  std::span<const ParameterFact> parameters;
-  std::string_view media;  ///< Types of the answer, between blanks.
+  /// Rows that describe the parameters: nobody reads what they would be put into.
+  ask::Parameters parameters;
+  std::span<const ask::Format> formats;  ///< Without names where `f` does not choose.
   http::Lane lane;
   Reserves reserves;
   /// May throw http::Problem, or Error as the engine.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <array>
+#include <string>
+#include <vector>
 
+#include "tools/serve/answer_parts.h"
 #include "tools/serve/endpoint.h"
 #include "tools/serve/questions.h"
 
@@ -10,63 +13,112 @@ namespace {
 
 using http::Lane;
 
-constexpr std::string_view kHeights = "application/prs.coverage+json application/geo+json text/csv";
-constexpr std::string_view kHeightsAndPlain =
-    "application/prs.coverage+json application/geo+json text/csv application/json";
+constexpr ask::Format kCoverageFormat{"covjson", kCoverageJson},
+    kGeoJsonFormat{"geojson", kGeoJson}, kCsvFormat{"csv", kCsv}, kJsonFormat{"json", kJson};
+constexpr std::array kPageFormats{kJsonFormat};
+constexpr std::array kLandingFormats{kJsonFormat, ask::Format{"html", "text/html"}};
+constexpr std::array kApiFormats{
+    ask::Format{"json", "application/vnd.oai.openapi+json;version=3.0"}};
+constexpr std::array kPositionFormats{kCoverageFormat, kGeoJsonFormat, kCsvFormat, kJsonFormat};
+constexpr std::array kHeightFormats{kCoverageFormat, kGeoJsonFormat, kCsvFormat};
+constexpr std::array kProfileFormats{kJsonFormat, kGeoJsonFormat, kCsvFormat};
+constexpr std::array kFeatureFormats{kGeoJsonFormat};
+constexpr std::array kViewshedFormats{ask::Format{"png", "image/png"}, kGeoJsonFormat};
+constexpr std::array kMeshFormats{ask::Format{"glb", "model/gltf-binary"},
+                                  ask::Format{"ply", "application/x-ply"}};
+// Of these no parameter `f` chooses.
+constexpr std::array kViewerMedia{ask::Format{"", "text/html"}, ask::Format{"", "text/javascript"},
+                                  ask::Format{"", "application/wasm"}};
+constexpr std::array kStreamMedia{ask::Format{"", "application/vnd.ptin.stream"}};
+constexpr std::array kTileMedia{ask::Format{"", "application/vnd.quantized-mesh"},
+                                ask::Format{"", kJson}};
+constexpr std::array kTilesetMedia{ask::Format{"", kJson}};
+constexpr std::array kSubtreeMedia{ask::Format{"", "application/octet-stream"}};
+constexpr std::array kContentMedia{ask::Format{"", "model/gltf-binary"}};
+constexpr std::array kFileMedia{ask::Format{"", "application/vnd.ptin"}};
+constexpr std::array kElevationMedia{ask::Format{"", kJson}, ask::Format{"", kGeoJson}};
 
-/// Built at the first call: the parameters stand in other files.
-const std::vector<Endpoint>& table() {
-  static const std::vector<Endpoint> all = {
-      {"/", "landing", false, "What there is, for people and as JSON", landing_parameters(),
-       "text/html application/json", Lane::kPoint, Reserves::kNothing, answer_landing},
+/// The parameters stand in other files.
+std::vector<Endpoint> made_table() {
+  std::vector<Endpoint> all = {
+      {"/",
+       "landing",
+       false,
+       "What there is, for people and as JSON",
+       {},
+       kLandingFormats,
+       Lane::kPoint,
+       Reserves::kNothing,
+       answer_landing},
       {"/viewer/*", "viewer", false, "The viewer: /viewer/index.html?collection=ID",
-       viewer_parameters(), "text/html text/javascript application/wasm", Lane::kPoint,
-       Reserves::kNothing, answer_viewer},
-      {"/conformance", "conformance", false, "The standards that this service keeps",
-       page_parameters(), "application/json", Lane::kPoint, Reserves::kNothing, answer_conformance},
-      {"/api", "api", false, "This service as OpenAPI 3.0", page_parameters(),
-       "application/vnd.oai.openapi+json;version=3.0", Lane::kPoint, Reserves::kNothing,
+       viewer_parameters(), kViewerMedia, Lane::kPoint, Reserves::kNothing, answer_viewer},
+      {"/conformance",
+       "conformance",
+       false,
+       "The standards that this service keeps",
+       {},
+       kPageFormats,
+       Lane::kPoint,
+       Reserves::kNothing,
+       answer_conformance},
+      {"/api",
+       "api",
+       false,
+       "This service as OpenAPI 3.0",
+       {},
+       kApiFormats,
+       Lane::kPoint,
+       Reserves::kNothing,
        answer_api},
-      {"/collections", "collections", false, "The terrains", page_parameters(), "application/json",
-       Lane::kPoint, Reserves::kNothing, answer_collections},
-      {"/collections/{id}", "collection", false, "One terrain: extent, CRS, questions",
-       page_parameters(), "application/json", Lane::kPoint, Reserves::kNothing, answer_collection},
+      {"/collections",
+       "collections",
+       false,
+       "The terrains",
+       {},
+       kPageFormats,
+       Lane::kPoint,
+       Reserves::kNothing,
+       answer_collections},
+      {"/collections/{id}",
+       "collection",
+       false,
+       "One terrain: extent, CRS, questions",
+       {},
+       kPageFormats,
+       Lane::kPoint,
+       Reserves::kNothing,
+       answer_collection},
       {"/collections/{id}/position", "position", true, "Heights at positions",
-       position_parameters(), kHeightsAndPlain, Lane::kPoint, Reserves::kQuarter, answer_position},
+       position_parameters(), kPositionFormats, Lane::kPoint, Reserves::kQuarter, answer_position},
       {"/collections/{id}/trajectory", "trajectory", true, "Heights along lines, as a coverage",
-       trajectory_parameters(), kHeights, Lane::kTile, Reserves::kQuarter, answer_trajectory},
+       trajectory_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_trajectory},
       {"/collections/{id}/area", "area", true, "Heights on a grid within a polygon",
-       area_parameters(), kHeights, Lane::kTile, Reserves::kQuarter, answer_area},
+       area_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_area},
       {"/collections/{id}/mesh", "mesh", false, "A mesh of a window", mesh_parameters(),
-       "model/gltf-binary application/x-ply", Lane::kSweep, Reserves::kAll, answer_mesh},
+       kMeshFormats, Lane::kSweep, Reserves::kAll, answer_mesh},
       {"/collections/{id}/isolines", "isolines", false, "Isolines of a window",
-       isolines_parameters(), "application/geo+json", Lane::kSweep, Reserves::kAll,
-       answer_isolines},
+       isolines_parameters(), kFeatureFormats, Lane::kSweep, Reserves::kAll, answer_isolines},
       {"/collections/{id}/highest", "highest", false, "The highest or lowest point of a window",
-       highest_parameters(), "application/geo+json", Lane::kTile, Reserves::kQuarter,
-       answer_highest},
+       highest_parameters(), kFeatureFormats, Lane::kTile, Reserves::kQuarter, answer_highest},
       {"/collections/{id}/viewshed", "viewshed", false, "What an observer sees",
-       viewshed_parameters(), "image/png application/geo+json", Lane::kSweep, Reserves::kAll,
-       answer_viewshed},
+       viewshed_parameters(), kViewshedFormats, Lane::kSweep, Reserves::kAll, answer_viewshed},
       {"/collections/{id}/profile", "profile", true,
        "The height along lines, with a break at every edge of the TIN", profile_parameters(),
-       "application/json application/geo+json text/csv", Lane::kTile, Reserves::kQuarter,
-       answer_profile},
+       kProfileFormats, Lane::kTile, Reserves::kQuarter, answer_profile},
       {"/collections/{id}/sight", "sight", true, "Lines of sight, visible or hidden",
-       sight_parameters(), "application/json", Lane::kSweep, Reserves::kAll, answer_sight},
+       sight_parameters(), kPageFormats, Lane::kSweep, Reserves::kAll, answer_sight},
       {"/collections/{id}/stream", "stream", true,
        "Progressive transmission: what matters most, then what a client lacks", stream_parameters(),
-       "application/vnd.ptin.stream", Lane::kSweep, Reserves::kAll, answer_stream},
+       kStreamMedia, Lane::kSweep, Reserves::kAll, answer_stream},
       {"/collections/{id}/tiles/*", "tiles", false,
        "layer.json, and z/x/y.terrain: quantized-mesh 1.0, as Cesium asks", tiles_parameters(),
-       "application/vnd.quantized-mesh application/json", Lane::kTile, Reserves::kAll,
-       answer_tiles},
+       kTileMedia, Lane::kTile, Reserves::kAll, answer_tiles},
       {"/collections/{id}/tileset.json",
        "tileset",
        false,
        "The terrain as 3D Tiles 1.1",
        {},
-       "application/json",
+       kTilesetMedia,
        Lane::kTile,
        Reserves::kAll,
        answer_tileset},
@@ -75,7 +127,7 @@ const std::vector<Endpoint>& table() {
        false,
        "Which tiles there are below one",
        {},
-       "application/octet-stream",
+       kSubtreeMedia,
        Lane::kTile,
        Reserves::kAll,
        answer_subtree},
@@ -84,7 +136,7 @@ const std::vector<Endpoint>& table() {
        false,
        "A tile of 3D Tiles",
        {},
-       "model/gltf-binary",
+       kContentMedia,
        Lane::kTile,
        Reserves::kAll,
        answer_content},
@@ -93,20 +145,28 @@ const std::vector<Endpoint>& table() {
        false,
        "The file itself, whole or by a range",
        {},
-       "application/vnd.ptin",
+       kFileMedia,
        Lane::kPoint,
        Reserves::kNothing,
        answer_file},
       {"/v1/*", "elevation", true,
        "Elevations in metres, as Google's Elevation API and opentopodata answer",
-       elevation_parameters(), "application/json application/geo+json", Lane::kPoint,
-       Reserves::kQuarter, answer_elevation, refuse_elevation},
+       elevation_parameters(), kElevationMedia, Lane::kPoint, Reserves::kQuarter, answer_elevation,
+       refuse_elevation},
   };
+  static std::string unread;
+  for (Endpoint& endpoint : all) {
+    if (endpoint.formats.front().name.empty()) continue;
+    endpoint.parameters.push_back(ask::format_row(unread, endpoint.formats));
+  }
   return all;
 }
 
 }  // namespace
 
-std::span<const Endpoint> endpoints() noexcept { return table(); }
+std::span<const Endpoint> endpoints() noexcept {
+  static const std::vector<Endpoint> all = made_table();
+  return all;
+}
 
 }  // namespace ptin::serve

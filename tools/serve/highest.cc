@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The highest or lowest point of a window, as GeoJSON.
+#include "tools/ask/highest.h"
+
 #include <array>
 #include <string>
 #include <vector>
@@ -13,15 +15,16 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr auto kHighestParameters = std::to_array<ParameterFact>(
-    {kBboxParameter,
-     {"lowest", "boolean", "the lowest instead", "true"},
-     {"listed", "integer", "so many of the highest vertices, 1 without it", "10"},
-     kErrorParameter,
-     kVerticesParameter,
-     kCrsParameter,
-     {"f", "string", "geojson", "geojson"}});
-constexpr auto kHighestFormats = std::to_array<OfferedFormat>({{"geojson", kGeoJson}});
+struct PeakQuestion : ask::HighestQuestion {
+  std::string crs;
+};
+
+ask::Parameters parameters_of(PeakQuestion& question) {
+  ask::Parameters rows;
+  ask::add_highest(rows, question);
+  rows.push_back(ask::crs_row(question.crs));
+  return rows;
+}
 
 Json feature_of(const HeightAt& at, const Places& places, Json properties) {
   MapPoint p = at.position;
@@ -34,20 +37,17 @@ Json feature_of(const HeightAt& at, const Places& places, Json properties) {
 
 }  // namespace
 
-std::span<const ParameterFact> highest_parameters() noexcept { return kHighestParameters; }
+ask::Parameters highest_parameters() { return described<PeakQuestion>(); }
 
 http::Response answer_highest(const Asked& asked) {
-  static_cast<void>(format_of(asked, kHighestFormats));
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  HighestRequest request;
-  if (const auto bbox = asked.question.bbox()) request.region = places.to_terrain(*bbox);
-  request.lowest = asked.question.flag("lowest");
-  const std::uint64_t listed = asked.question.count("listed").value_or(1);
-  check_count(listed, asked.options.question.points, "vertices", "points", "listed");
-  request.listed = static_cast<std::uint32_t>(listed);
-  request.detail = detail_of(asked);
-  request.limits = engine_limits(asked, listed * kAnswerBytesOfPlace);
+  const ask::Format& format = format_of(asked);
+  auto question = read<PeakQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  HighestRequest& request = question.request;
+  if (question.region.window) request.region = places.to_terrain(*question.region.window);
+  check_count(request.listed, asked.options.question.points, "vertices", "points", "listed");
+  check_detail(asked, request.detail);
+  request.limits = engine_limits(asked, request.listed * kAnswerBytesOfPlace);
   const HighestResult result = asked.terrain().highest(request);
   Json features = Json::array();
   if (result.state == PointState::kSurface) {
@@ -62,16 +62,13 @@ http::Response answer_highest(const Asked& asked) {
                      {{"rank", i + (result.at_vertex ? 1 : 2)}, {"at_vertex", true}}));
     }
   }
-  http::Response response = json_response(
-      {{"type", "FeatureCollection"},
-       {"state", tools::name_of(result.state)},
-       {"features", std::move(features)},
-       {"ptin:certainty",
-        certainty_json(asked, result.certified_error, result.certified_deviation, result.exact)}},
-      kGeoJson);
-  add_cost(response, result.cost);
-  add_certainty(response, result.certified_error, result.exact);
-  return response;
+  const Json json = {{"type", "FeatureCollection"},
+                     {"state", tools::name_of(result.state)},
+                     {"features", std::move(features)},
+                     {"ptin:certainty", certainty_json(asked, result.certified_error,
+                                                       result.certified_deviation, result.exact)}};
+  return answered(asked, text_of(json), format.media, result.cost, result.certified_error,
+                  result.exact);
 }
 
 }  // namespace ptin::serve

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Isolines of a window, as GeoJSON.
+#include "tools/ask/isolines.h"
+
 #include <array>
 #include <string>
 #include <vector>
@@ -17,16 +19,16 @@ using http::Problem;
 
 constexpr std::size_t kMostAnswered = 1000;  // Levels of one question.
 
-constexpr auto kIsolinesParameters = std::to_array<ParameterFact>(
-    {{"interval", "number", "a line at every multiple of this height", "100"},
-     {"base", "number", "from which intervals count", "0"},
-     {"level", "array", "heights of the lines, instead of an interval"},
-     kBboxParameter,
-     kErrorParameter,
-     kVerticesParameter,
-     kCrsParameter,
-     {"f", "string", "geojson", "geojson"}});
-constexpr auto kIsolinesFormats = std::to_array<OfferedFormat>({{"geojson", kGeoJson}});
+struct ContourQuestion : ask::IsolineQuestion {
+  std::string crs;
+};
+
+ask::Parameters parameters_of(ContourQuestion& question) {
+  ask::Parameters rows;
+  ask::add_isolines(rows, question);
+  rows.push_back(ask::crs_row(question.crs));
+  return rows;
+}
 
 [[noreturn]] void throw_many_levels(const char* parameter) {
   throw Problem(413, "more than " + std::to_string(kMostAnswered) +
@@ -34,18 +36,17 @@ constexpr auto kIsolinesFormats = std::to_array<OfferedFormat>({{"geojson", kGeo
       .at(parameter);
 }
 
-std::vector<double> levels_of(const Asked& asked) {
-  const Question& q = asked.question;
-  if (q.has("level") == q.has("interval")) {
+/// Levels that the terrain has, and not too many of them.
+std::vector<double> levels_of(const Asked& asked, const ask::Levels& levels) {
+  if (!levels.given()) {
     throw Problem(400, "give interval or level: the heights of the lines").at("interval");
   }
-  if (q.has("level")) return q.numbers("level");
-  const double interval = *q.number("interval"), base = q.number("base", 0.0);
-  if (interval <= 0) throw Problem(400, "an interval is above 0").at("interval");
   const double low = asked.facts().min_height, high = asked.facts().max_height;
-  if (!((high - low) / interval < static_cast<double>(kMostAnswered)))
+  if (levels.interval && !((high - low) / *levels.interval < static_cast<double>(kMostAnswered))) {
     throw_many_levels("interval");
-  return levels_at(interval, base, low, high);
+  }
+  if (levels.levels.size() > kMostAnswered) throw_many_levels("level");
+  return levels.interval ? levels_at(*levels.interval, levels.base, low, high) : levels.levels;
 }
 
 /// The positions of a line as arrays of JSON, in the client's CRS.
@@ -75,19 +76,18 @@ void add_features(LongText& text, const Isolines& lines, const Places& places) {
 
 }  // namespace
 
-std::span<const ParameterFact> isolines_parameters() noexcept { return kIsolinesParameters; }
+ask::Parameters isolines_parameters() { return described<ContourQuestion>(); }
 
 http::Response answer_isolines(const Asked& asked) {
-  static_cast<void>(format_of(asked, kIsolinesFormats));
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  IsolineRequest request;
-  request.levels = levels_of(asked);
-  if (request.levels.size() > kMostAnswered) throw_many_levels("level");
-  request.detail = detail_of(asked);
+  const ask::Format& format = format_of(asked);
+  auto question = read<ContourQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  IsolineRequest& request = question.request;
+  request.levels = levels_of(asked, question.levels);
+  check_detail(asked, request.detail);
   request.limits = engine_limits(asked);
-  request.region = window_on_terrain(asked, places);
-  LongText text(asked);
+  request.region = window_on_terrain(asked, places, question.region.window);
+  LongText text = long_text(asked);
   text.add("{\"type\":\"FeatureCollection\",\"features\":[");
   double certified = asked.facts().base_error, deviation = asked.facts().base_deviation;
   bool is_exact = certified == 0;
@@ -103,10 +103,7 @@ http::Response answer_isolines(const Asked& asked) {
     cost = lines.cost;
   }
   text.add("],\"ptin:certainty\":").json(certainty_json(asked, certified, deviation, is_exact));
-  http::Response response = text_response(text.add("}\n").take(), kGeoJson);
-  add_cost(response, cost);
-  add_certainty(response, certified, is_exact);
-  return response;
+  return answered(asked, text.add("}\n").take(), format.media, cost, certified, is_exact);
 }
 
 }  // namespace ptin::serve

@@ -26,14 +26,6 @@ constexpr const char* kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr std::array kDataQueries = {"position", "trajectory", "area"};
 constexpr std::array kDataFormats = {"covjson", "geojson", "csv"};  // of each of them
 
-constexpr auto kLandingFormats =
-    std::to_array<OfferedFormat>({{"json", kJson}, {"html", "text/html"}});
-constexpr auto kLandingParameters =
-    std::to_array<ParameterFact>({{"f", "string", "json or html", "json"}});
-
-constexpr auto kPageFormats = std::to_array<OfferedFormat>({{"json", kJson}});
-constexpr auto kPageParameters = std::to_array<ParameterFact>({{"f", "string", "json", "json"}});
-
 Json link(const std::string& href, const char* rel, std::string_view type, const char* title) {
   return {{"href", href}, {"rel", rel}, {"type", type}, {"title", title}};
 }
@@ -120,31 +112,24 @@ std::string landing_html(const Asked& asked) {
 
 }  // namespace
 
-std::span<const ParameterFact> landing_parameters() noexcept { return kLandingParameters; }
-std::span<const ParameterFact> page_parameters() noexcept { return kPageParameters; }
-
 http::Response answer_landing(const Asked& asked) {
-  const OfferedFormat& format = format_of(asked, kLandingFormats);
-  http::Response response = format.name == "json"
+  http::Response response = format_of(asked).name == "json"
                                 ? json_response(landing_json())
                                 : text_response(landing_html(asked), "text/html; charset=utf-8");
-  add_choice(response, asked);
+  if (!asked.question.has("f")) response.add("Vary", "Accept");
   return response;
 }
 
 http::Response answer_conformance(const Asked& asked) {
-  static_cast<void>(format_of(asked, kPageFormats));
-  return json_response({{"conformsTo", kStandards}});
+  return json_response({{"conformsTo", kStandards}}, format_of(asked).media);
 }
 
 http::Response answer_collections(const Asked& asked) {
-  static_cast<void>(format_of(asked, kPageFormats));
-  return json_response(all_json(asked));
+  return json_response(all_json(asked), format_of(asked).media);
 }
 
 http::Response answer_collection(const Asked& asked) {
-  static_cast<void>(format_of(asked, kPageFormats));
-  return json_response(collection_json(*asked.collection));
+  return json_response(collection_json(*asked.collection), format_of(asked).media);
 }
 
 }  // namespace ptin::serve

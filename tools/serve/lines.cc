@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <utility>
 
+#include "tools/ask/profile.h"
 #include "tools/http/problem.h"
 #include "tools/region/straight_sides.h"
 #include "tools/serve/wkt_places.h"
@@ -27,8 +27,9 @@ struct LinesThere {
 };
 
 /// The lines of `coords`.
-LinesThere lines_of(const Asked& asked, const Places& places, const tools::SideTarget& sides) {
-  Lines lines = lines_of_wkt(asked.question.needed("coords"), "coords");
+LinesThere lines_of(const Asked& asked, const std::string& coords, const Places& places,
+                    const tools::SideTarget& sides) {
+  Lines lines = lines_of_wkt(coords, "coords");
   std::size_t positions = 0;
   for (const std::vector<MapPoint>& line : lines) positions += line.size();
   check_count(positions, asked.options.question.points, "positions", "points", "coords");
@@ -56,16 +57,8 @@ void join_turns(std::vector<ProfilePoint>& points, const LinesThere& there, cons
   });
 }
 
-/// Distances as the command line has them: in map units, of degrees in metres.
-std::function<double(MapPoint, MapPoint)> distance_of(const Collection& collection) {
-  if (!collection.ground.geographic) return {};
-  return [ground = collection.ground](MapPoint a, MapPoint b) {
-    return ground.distance(a, b) * ground.metres_per_height;
-  };
-}
-
-double length_of(const LinesThere& there, const Collection& collection) {
-  const auto distance = distance_of(collection);
+double length_of(const LinesThere& there, const ProfileRequest& request) {
+  const auto& distance = request.ground_distance;
   double length = 0.0;
   for (std::size_t l = 0; l < there.lines.size(); ++l) {
     if (l > 0 && there.number[l] == there.number[l - 1]) continue;
@@ -78,13 +71,9 @@ double length_of(const LinesThere& there, const Collection& collection) {
   return length;
 }
 
-double station_step_of(const Asked& asked, double length) {
-  const double step = asked.question.number("stations", 0.0);
-  if (step < 0) {
-    throw http::Problem(400, "the distance between stations is not negative").at("stations");
-  }
+void check_stations(const Asked& asked, double step, double length) {
   const std::size_t most = asked.options.question.vertices;
-  if (step == 0 || length / step <= static_cast<double>(most)) return step;
+  if (step == 0 || length / step <= static_cast<double>(most)) return;
   throw http::Problem(413, "the lines have more than " + std::to_string(most) +
                                " stations so near to each other; ask for a larger distance")
       .at("stations")
@@ -93,21 +82,29 @@ double station_step_of(const Asked& asked, double length) {
 
 }  // namespace
 
-AlongLines walk_lines(const Asked& asked, const Places& places) {
+ask::Parameters parameters_of(LinesQuestion& question) {
+  ask::Parameters rows;
+  rows.push_back(ask::coords_row(question.coords, "Lines as WKT, LINESTRING or MULTILINESTRING",
+                                 "LINESTRING(-118.3 34.34, -118.29 34.35)"));
+  ask::add_profile(rows, question.request);
+  rows.push_back(ask::crs_row(question.crs));
+  return rows;
+}
+
+AlongLines walk_lines(const Asked& asked, const LinesQuestion& question, const Places& places) {
   const Collection& collection = *asked.collection;
   tools::SideTarget sides = tools::side_target(asked.terrain().store().facts(), 0.0);
   sides.most_points = asked.options.question.vertices;
-  const LinesThere there = lines_of(asked, places, sides);
-  const double length = length_of(there, collection);
+  const LinesThere there = lines_of(asked, question.coords, places, sides);
+  ProfileRequest request = question.request;
+  ask::set_ground(request, collection.ground);
+  const double length = length_of(there, request);
   if (length == 0) throw http::Problem(400, "no line has a length").at("coords");
-  ProfileRequest request;
-  request.ground_distance = distance_of(collection);
-  request.station_step = station_step_of(asked, length);
-  request.detail = detail_of(asked);
+  check_stations(asked, request.station_step, length);
+  check_detail(asked, request.detail);
   request.limits = engine_limits(asked);
   AlongLines along;
   if (!places.is_native()) along.bent_at_most = sides.most_bend;
-  along.length_unit = collection.ground.geographic ? "metre" : collection.crs.horizontal_unit;
   along.profile = asked.terrain().profile(there.lines, request);
   if (there.number.back() + 1 < there.number.size()) {
     join_turns(along.profile.points, there, places);

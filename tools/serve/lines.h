@@ -15,16 +15,23 @@ namespace ptin::serve {
 struct AlongLines {
   ProfileResult profile;
   std::vector<MapPoint> client;  ///< For each point of the profile.
-  std::string length_unit;       ///< Of distances: that of the map, in degrees metres.
   /// How far a side, straight in the client's CRS, is from the line that was walked; map units, 0
   /// where nothing was transformed.
   double bent_at_most = 0.0;
 };
 
-/// Reads `coords`, `crs`, `stations`, `error` and `vertices`, and walks the lines.
+/// A question about lines.
+struct LinesQuestion {
+  ProfileRequest request;
+  std::string coords, crs;
+};
+[[nodiscard]] ask::Parameters parameters_of(LinesQuestion& question);
+
+/// Walks the lines.
 /// @throws http::Problem 400  no line has a length
 ///                       413  more positions than a question may name; more stations or points of
 ///                            the profile than an answer may have
-[[nodiscard]] AlongLines walk_lines(const Asked& asked, const Places& places);
+[[nodiscard]] AlongLines walk_lines(const Asked& asked, const LinesQuestion& question,
+                                    const Places& places);
 
 }  // namespace ptin::serve

@@ -19,14 +19,23 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr auto kMeshParameters = std::to_array<ParameterFact>(
-    {kBboxParameter,
-     kErrorParameter,
-     {"vertices", "integer", "a mesh of so many vertices, the most important ones of the window"},
-     kCrsParameter,
-     {"f", "string", "glb (metres around a local origin, y up) or ply (map coordinates)", "glb"}});
-constexpr auto kMeshFormats =
-    std::to_array<OfferedFormat>({{"glb", "model/gltf-binary"}, {"ply", "application/x-ply"}});
+struct MeshQuestion {
+  RefineRequest request;
+  ask::RegionText region;
+  std::string crs;
+};
+
+ask::Parameters parameters_of(MeshQuestion& question) {
+  ask::Parameters rows;
+  ask::add_region(rows, question.region, ask::RegionKinds::kWindow, ask::Door::kService);
+  ask::add_detail(
+      rows, question.request.detail, "",
+      "A mesh of so many vertices, the most important ones of the window, instead of an "
+      "error",
+      ask::Door::kService);
+  rows.push_back(ask::crs_row(question.crs));
+  return rows;
+}
 
 /// The file in memory, within what is left of the question's.
 class BoundedSink : public tools::MemorySink {
@@ -58,19 +67,19 @@ std::string file_of(const tools::Mesh& mesh, bool as_glb, const Asked& asked) {
 
 }  // namespace
 
-std::span<const ParameterFact> mesh_parameters() noexcept { return kMeshParameters; }
+ask::Parameters mesh_parameters() { return described<MeshQuestion>(); }
 
 http::Response answer_mesh(const Asked& asked) {
-  const OfferedFormat& format = format_of(asked, kMeshFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  RefineRequest request;
-  request.detail = detail_of(asked);
+  const ask::Format& format = format_of(asked);
+  auto question = read<MeshQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  RefineRequest& request = question.request;
+  check_detail(asked, request.detail);
   const std::size_t most = asked.options.question.vertices;
   if (request.detail.vertices) {
     check_count(*request.detail.vertices, most, "vertices", "vertices", "vertices");
   }
-  if (const auto window = window_on_terrain(asked, places)) {
+  if (const auto window = window_on_terrain(asked, places, question.region.window)) {
     request.region = *window;
     request.form = ResultForm::kMeetingRegion;
   }
@@ -79,12 +88,11 @@ http::Response answer_mesh(const Asked& asked) {
   check_count(refined.vertices, most, "vertices", "vertices", "bbox");
   tools::Mesh mesh = tools::surface_mesh(refined, asked.facts());
   tools::set_crs(mesh, asked.collection->crs, asked.facts());
-  http::Response response = text_response(file_of(mesh, format.name == "glb", asked), format.media);
-  add_choice(response, asked);
+  http::Response response =
+      answered(asked, file_of(mesh, format.name == "glb", asked), format.media, refined.cost,
+               refined.certified_error, refined.exact);
   response.add("Ptin-Vertices", std::to_string(mesh.vertices.size()));
   response.add("Ptin-Triangles", std::to_string(mesh.triangles.size()));
-  add_cost(response, refined.cost);
-  add_certainty(response, refined.certified_error, refined.exact);
   return response;
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "tools/http/problem.h"
+#include "tools/region/on_terrain.h"
 #include "tools/serve/transformations.h"
 #include "tools/tiles/curve_range.h"
 
@@ -330,8 +331,7 @@ Window Places::to_terrain(const Window& given) const {
   Window window = given;
   if (window.min_x > window.max_x) {
     if (!client_turns_) {
-      throw http::Problem(400, "the window is inverted; expected west, south, east, north")
-          .at("bbox");
+      throw http::Problem(400, tools::kInverted).at("bbox");
     }
     window.max_x += kTurn;
   }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Heights at positions: OGC EDR's `position`.
-#include <array>
 #include <string>
 #include <vector>
 
+#include "tools/ask/locate.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
 #include "tools/serve/questions.h"
@@ -14,71 +14,53 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr auto kPositionParameters = std::to_array<ParameterFact>(
-    {{"coords", "string", "positions as WKT, POINT or MULTIPOINT", "POINT(-118.3 34.34)", true},
-     kErrorParameter,
-     kVerticesParameter,
-     kCrsParameter,
-     kNamesParameter,
-     kDatetimeParameter,
-     kZParameter,
-     {"f", "string", "covjson, geojson, csv or json", "geojson"}});
+struct PositionQuestion {
+  LocateRequest request;
+  std::string coords, crs;
+  CoverageNames names;
+};
 
-/// The member `triangle`: its corners in the CRS of the client, null where there is none.
-void add_triangle(LongText& text, const LocatedPoint& p, const Asked& asked, const Places& places) {
-  text.add(",\"triangle\":");
-  if (p.state == PointState::kOutside) {
-    text.add("null");
-    return;
-  }
-  std::array<MapPoint, 3> corners{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const GridPoint at = p.triangle[c].position;
-    corners[c] = asked.facts().map.to_map(at.x, at.y);
-  }
-  places.from_terrain(corners);
-  for (std::size_t c = 0; c < 3; ++c) {
-    text.add(c == 0 ? "[[" : ",[").number(corners[c].x).add(",").number(corners[c].y).add(",");
-    text.number(p.triangle[c].height).add("]");
-  }
-  text.add("]");
+ask::Parameters parameters_of(PositionQuestion& q) {
+  ask::Parameters rows;
+  rows.push_back(
+      ask::coords_row(q.coords, "Positions as WKT, POINT or MULTIPOINT", "POINT(-118.3 34.34)"));
+  ask::add_locate(rows, q.request);
+  rows.push_back(ask::crs_row(q.crs));
+  add_coverage_rows(rows, q.names);
+  return rows;
 }
 
 /// The same with the triangles, in the CRS of the client, for a program that shows them.
 std::string plain_json(std::span<const MapPoint> client, const LocateResult& result,
                        const Asked& asked, const Places& places) {
-  LongText text(asked);
+  const auto columns =
+      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kObject);
+  LongText text = long_text(asked);
   text.add("{\"points\":[");
   for (std::size_t i = 0; i < client.size(); ++i) {
-    text.add(i == 0 ? "{\"x\":" : ",{\"x\":").number(client[i].x);
-    text.add(",\"y\":").number(client[i].y).add(",");
-    add_members(text, result.points[i]);
-    add_triangle(text, result.points[i], asked, places);
-    text.add("}");
+    ask::LocatedRow row(client[i], result.points[i], asked.facts().map);
+    if (row.point.state != PointState::kOutside) places.from_terrain(row.corners);
+    ask::add_object(i == 0 ? text : text.add(","), columns, row);
   }
   text.add("]");
-  const Json certainty = certainty_of(asked, result);
-  for (const auto& [name, value] : certainty.items()) {
-    text.add(",\"").add(name).add("\":").json(value);
-  }
+  ask::add_members(text, certainty_of(asked, result));
   return text.add("}\n").take();
 }
 
 }  // namespace
 
-std::span<const ParameterFact> position_parameters() noexcept { return kPositionParameters; }
+ask::Parameters position_parameters() { return described<PositionQuestion>(); }
 
 http::Response answer_position(const Asked& asked) {
-  static_cast<void>(asked_names(asked.question));
-  const OfferedFormat& format = format_of(asked, kPlaceFormats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  const std::vector<MapPoint> client = points_of_wkt(asked.question.needed("coords"), "coords");
+  const ask::Format& format = format_of(asked);
+  auto question = read<PositionQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  const std::vector<MapPoint> client = points_of_wkt(question.coords, "coords");
   check_count(client.size(), asked.options.question.points, "positions", "points", "coords");
   std::vector<MapPoint> at = client;
   places.to_terrain(at);
-  LocateRequest request;
-  request.detail = detail_of(asked);
+  LocateRequest& request = question.request;
+  check_detail(asked, request.detail);
   request.limits = engine_limits(asked, at.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
@@ -91,13 +73,11 @@ http::Response answer_position(const Asked& asked) {
     text = points_geojson(asked, client, result);
   } else {
     const auto value = [&](std::size_t i) { return value_of(result.points[i]); };
-    text = coverage_text(asked, places, coverage_at(client, value), certainty_of(asked, result));
+    text = coverage_text(asked, places, question.names, coverage_at(client, value),
+                         certainty_of(asked, result));
   }
-  http::Response response = text_response(std::move(text), format.media);
-  add_choice(response, asked);
-  add_cost(response, result.cost);
-  add_certainty(response, result.certified_error, result.exact);
-  return response;
+  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
+                  result.exact);
 }
 
 }  // namespace ptin::serve

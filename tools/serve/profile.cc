@@ -2,7 +2,9 @@
 //
 // The height along lines, with a break at every edge of the TIN: `profile`, and OGC EDR's
 // `trajectory`, which is the same as a coverage.
-#include <array>
+#include "tools/ask/profile.h"
+
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,121 +18,94 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr ParameterFact kCoords{"coords", "string", "lines as WKT, LINESTRING or MULTILINESTRING",
-                                "LINESTRING(-118.3 34.34, -118.29 34.35)", true};
-constexpr ParameterFact kStations{
-    "stations", "number",
-    "a point at every multiple of this distance too, in the unit of distances: that of the map, in "
-    "degrees metres",
-    "100"};
+struct TrajectoryQuestion : LinesQuestion {
+  CoverageNames names;
+};
 
-constexpr auto kProfileParameters =
-    std::to_array<ParameterFact>({kCoords,
-                                  kStations,
-                                  kErrorParameter,
-                                  kVerticesParameter,
-                                  kCrsParameter,
-                                  {"f", "string", "json, geojson or csv", "csv"}});
-constexpr auto kProfileFormats =
-    std::to_array<OfferedFormat>({{"json", kJson}, {"geojson", kGeoJson}, {"csv", kCsv}});
+ask::Parameters parameters_of(TrajectoryQuestion& question) {
+  ask::Parameters rows = parameters_of(static_cast<LinesQuestion&>(question));
+  add_coverage_rows(rows, question.names);
+  return rows;
+}
 
-constexpr auto kTrajectoryParameters =
-    std::to_array<ParameterFact>({kCoords,
-                                  kStations,
-                                  kErrorParameter,
-                                  kVerticesParameter,
-                                  kCrsParameter,
-                                  kNamesParameter,
-                                  kDatetimeParameter,
-                                  kZParameter,
-                                  {"f", "string", "covjson, geojson or csv", "geojson"}});
-constexpr auto kTrajectoryFormats = std::to_array<OfferedFormat>(
-    {{"covjson", kCoverageJson}, {"geojson", kGeoJson}, {"csv", kCsv}});
+ask::ProfileRow row_of(const AlongLines& along, std::size_t i) {
+  return {along.profile.points[i], along.client[i], along.profile.certified_deviation};
+}
 
 std::string csv_of(const AlongLines& along, const Asked& asked) {
-  LongText text(asked);
-  text.add("line,distance,x,y,height,state,station\n");
+  const auto columns =
+      ask::columns_of(ask::profile_fields(), ask::Door::kService, ask::As::kTableRow);
+  LongText text = long_text(asked);
+  ask::add_csv_heading(text, columns);
   for (std::size_t i = 0; i < along.client.size(); ++i) {
-    const ProfilePoint& p = along.profile.points[i];
-    text.number(p.line).add(",").number(p.distance).add(",");
-    text.number(along.client[i].x).add(",").number(along.client[i].y).add(",");
-    if (p.height == p.height) text.number(p.height);
-    text.add(",").add(tools::name_of(p.state)).add(p.is_station ? ",1\n" : ",0\n");
+    ask::add_csv_row(text, columns, row_of(along, i));
   }
   return text.take();
 }
 
+/// What is told of the profile as a whole.
+Json facts_of(const AlongLines& along, const Asked& asked) {
+  Json facts = certainty_of(asked, along.profile);
+  put(facts, ask::profile_answer_fields(),
+      ask::ProfileAnswer{along.profile, asked.collection->crs, nullptr, along.bent_at_most},
+      ask::Door::kService);
+  return facts;
+}
+
 Json certainty_of(const AlongLines& along, const Asked& asked) {
-  Json certainty = certainty_json(asked, along.profile.certified_error,
-                                  along.profile.certified_deviation, along.profile.exact);
+  Json certainty = certainty_of(asked, along.profile);
   certainty["bent_at_most"] = along.bent_at_most;
   return certainty;
 }
 
 std::string json_of(const AlongLines& along, const Asked& asked) {
-  LongText text(asked);
-  char before = '{';
-  const Json certainty = certainty_of(along, asked);
-  for (const auto& [name, value] : certainty.items()) {
-    text.add({&before, 1}).add("\"").add(name).add("\":").json(value);
-    before = ',';
-  }
-  text.add(",\"length_unit\":").json(along.length_unit);
-  text.add(",\"skipped_lines\":").number(static_cast<double>(along.profile.skipped_lines));
-  text.add(",\"points\":[");
+  const auto columns =
+      ask::columns_of(ask::profile_fields(), ask::Door::kService, ask::As::kObject);
+  LongText text = long_text(asked);
+  text.add("{\"points\":[");
   for (std::size_t i = 0; i < along.client.size(); ++i) {
-    const ProfilePoint& p = along.profile.points[i];
-    text.add(i == 0 ? "{\"line\":" : ",{\"line\":").number(p.line);
-    text.add(",\"distance\":").number(p.distance).add(",\"x\":").number(along.client[i].x);
-    text.add(",\"y\":").number(along.client[i].y).add(",\"height\":").number(p.height);
-    text.add(",\"state\":\"").add(tools::name_of(p.state)).add("\",\"station\":");
-    text.truth(p.is_station).add("}");
+    ask::add_object(i == 0 ? text : text.add(","), columns, row_of(along, i));
   }
-  return text.add("]}\n").take();
+  text.add("]");
+  ask::add_members(text, facts_of(along, asked));
+  return text.add("}\n").take();
 }
 
-/// The stretches of the points from `begin` to `end` that have heights, as arrays of positions.
-void add_stretches(LongText& text, const AlongLines& along, std::size_t begin, std::size_t end) {
-  const std::vector<ProfilePoint>& points = along.profile.points;
-  bool is_first = true;
-  for (std::size_t i = begin; i < end;) {
-    std::size_t last = i;  // of the stretch that begins here
-    while (last + 1 < end && points[last].state == PointState::kSurface &&
-           points[last + 1].height == points[last + 1].height) {
-      ++last;
+/// The stretches of a line that have heights, as arrays of positions.
+void add_stretches(LongText& text, std::span<const ProfilePoint> points,
+                   std::span<const MapPoint> client) {
+  const char* before = "[";
+  ask::for_each_stretch(points, [&](std::size_t first, std::size_t last) {
+    text.add(before);
+    before = ",[";
+    for (std::size_t i = first; i <= last; ++i) {
+      text.add(i == first ? "[" : ",[").number(client[i].x).add(",");
+      text.number(client[i].y).add(",").number(points[i].height).add("]");
     }
-    if (last > i && points[i].height == points[i].height) {
-      text.add(is_first ? "[" : ",[");
-      is_first = false;
-      for (std::size_t j = i; j <= last; ++j) {
-        text.add(j == i ? "[" : ",[").number(along.client[j].x).add(",");
-        text.number(along.client[j].y).add(",").number(points[j].height).add("]");
-      }
-      text.add("]");
-    }
-    i = last + 1;
-  }
+    text.add("]");
+  });
 }
 
-/// One feature a line: stretches over surface, as a MultiLineString with heights.
 std::string geojson_of(const AlongLines& along, const Asked& asked) {
-  LongText text(asked);
+  const auto columns =
+      ask::columns_of(ask::profile_line_fields(), ask::Door::kService, ask::As::kFeature);
+  LongText text = long_text(asked);
   text.add(R"({"type":"FeatureCollection","features":[)");
-  const std::vector<ProfilePoint>& points = along.profile.points;
-  for (std::size_t begin = 0; begin < points.size();) {
-    std::size_t end = begin;
-    while (end < points.size() && points[end].line == points[begin].line) ++end;
+  std::size_t begin = 0;
+  for (const std::span<const ProfilePoint> line : tools::lines_of(along.profile)) {
     text.add(begin == 0 ? "{" : ",{").add(R"("type":"Feature","geometry":)");
     text.add(R"({"type":"MultiLineString","coordinates":[)");
-    add_stretches(text, along, begin, end);
-    text.add(R"(]},"properties":{"line":)").number(points[begin].line);
-    text.add(",\"length\":").number(points[end - 1].distance).add("}}");
-    begin = end;
+    add_stretches(text, line, std::span(along.client).subspan(begin, line.size()));
+    text.add(R"(]},"properties":)");
+    ask::add_object(text, columns, ask::ProfileLineRow{line, along.profile});
+    text.add("}");
+    begin += line.size();
   }
   return text.add("],\"ptin:certainty\":").json(certainty_of(along, asked)).add("}\n").take();
 }
 
-std::string coverage_of(const AlongLines& along, const Asked& asked, const Places& places) {
+std::string coverage_of(const AlongLines& along, const Asked& asked, const Places& places,
+                        const CoverageNames& names) {
   const auto value = [&](std::size_t i) {
     const ProfilePoint& p = along.profile.points[i];
     const double deviation = along.profile.certified_deviation;
@@ -140,41 +115,41 @@ std::string coverage_of(const AlongLines& along, const Asked& asked, const Place
                                                                : CoverageState::kOutside;
     return CoverageValue{p.height, p.height - deviation, p.height + deviation, state};
   };
-  return coverage_text(asked, places, coverage_at(along.client, value), certainty_of(along, asked));
+  return coverage_text(asked, places, names, coverage_at(along.client, value),
+                       certainty_of(along, asked));
 }
 
-http::Response respond(const Asked& asked, std::span<const OfferedFormat> formats) {
-  const OfferedFormat& format = format_of(asked, formats);
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  const AlongLines along = walk_lines(asked, places);
+http::Response respond(const Asked& asked, const LinesQuestion& question,
+                       const CoverageNames& names) {
+  const ask::Format& format = format_of(asked);
+  const Places places = places_of(asked, question.crs);
+  const AlongLines along = walk_lines(asked, question, places);
   std::string text;
   if (format.name == "csv") {
     text = csv_of(along, asked);
   } else if (format.name == "geojson") {
     text = geojson_of(along, asked);
   } else if (format.name == "covjson") {
-    text = coverage_of(along, asked, places);
+    text = coverage_of(along, asked, places, names);
   } else {
     text = json_of(along, asked);
   }
-  http::Response response = text_response(std::move(text), format.media);
-  add_choice(response, asked);
-  add_cost(response, along.profile.cost);
-  add_certainty(response, along.profile.certified_error, along.profile.exact);
-  return response;
+  return answered(asked, std::move(text), format.media, along.profile.cost,
+                  along.profile.certified_error, along.profile.exact);
 }
 
 }  // namespace
 
-std::span<const ParameterFact> profile_parameters() noexcept { return kProfileParameters; }
-std::span<const ParameterFact> trajectory_parameters() noexcept { return kTrajectoryParameters; }
+ask::Parameters profile_parameters() { return described<LinesQuestion>(); }
+ask::Parameters trajectory_parameters() { return described<TrajectoryQuestion>(); }
 
-http::Response answer_profile(const Asked& asked) { return respond(asked, kProfileFormats); }
+http::Response answer_profile(const Asked& asked) {
+  return respond(asked, read<LinesQuestion>(asked), {});
+}
 
 http::Response answer_trajectory(const Asked& asked) {
-  static_cast<void>(asked_names(asked.question));
-  return respond(asked, kTrajectoryFormats);
+  const auto question = read<TrajectoryQuestion>(asked);
+  return respond(asked, question, question.names);
 }
 
 }  // namespace ptin::serve

@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "tools/ask/long_text.h"
 #include "tools/http/response.h"
 #include "tools/serve/endpoint.h"
 
@@ -22,21 +23,22 @@ void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
     answer_collection;
 
-// What they take. A page: what is about the service itself, but for the landing page.
-[[nodiscard]] std::span<const ParameterFact> landing_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> page_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> viewer_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> position_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> trajectory_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> area_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> elevation_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> mesh_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> isolines_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> highest_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> viewshed_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> profile_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> sight_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> stream_parameters() noexcept;
-[[nodiscard]] std::span<const ParameterFact> tiles_parameters() noexcept;
+/// A service of these questions as OpenAPI 3.0.
+[[nodiscard]] ask::Json openapi(std::span<const Endpoint> all, const ServeOptions& options);
+
+// The parameters that they take, as rows that describe them, but for `f`.
+[[nodiscard]] ask::Parameters viewer_parameters();
+[[nodiscard]] ask::Parameters position_parameters();
+[[nodiscard]] ask::Parameters trajectory_parameters();
+[[nodiscard]] ask::Parameters area_parameters();
+[[nodiscard]] ask::Parameters elevation_parameters();
+[[nodiscard]] ask::Parameters mesh_parameters();
+[[nodiscard]] ask::Parameters isolines_parameters();
+[[nodiscard]] ask::Parameters highest_parameters();
+[[nodiscard]] ask::Parameters viewshed_parameters();
+[[nodiscard]] ask::Parameters profile_parameters();
+[[nodiscard]] ask::Parameters sight_parameters();
+[[nodiscard]] ask::Parameters stream_parameters();
+[[nodiscard]] ask::Parameters tiles_parameters();
 
 }  // namespace ptin::serve

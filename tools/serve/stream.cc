@@ -18,16 +18,34 @@ namespace {
 
 using http::Problem;
 
-constexpr auto kStreamParameters = std::to_array<ParameterFact>(
-    {{"window", "array", "what the client looks at: xmin, ymin, xmax, ymax in map units",
-      "380000,3802000,382000,3804000"},
-     kErrorParameter,
-     {"max_bytes", "integer", "most bytes of the answer, which ends on a frame; 256 KiB without it",
-      "100000"},
-     {"have", "array",
-      "what the client was served before, in that order: objects with window, error, splits",
-      "[{\"error\":50,\"splits\":3000}]"},
-     {"fingerprint", "string", "of the collection from which it was served", ""}});
+struct PieceQuestion {
+  tools::Serving wanted;
+  std::optional<std::uint64_t> max_bytes;
+};
+
+ask::Parameters parameters_of(PieceQuestion& question) {
+  ask::Parameters rows;
+  rows.add("window", &question.wanted.window, "",
+           "What the client looks at: xmin, ymin, xmax, ymax")
+      .in(ask::Unit::kMap)
+      .values(4, 4)
+      .at(ask::Door::kService)
+      .like("380000,3802000,382000,3804000");
+  rows.push_back(
+      ask::error_row(question.wanted.error, "Certified error allowed; without it full detail"));
+  rows.add("max_bytes", &question.max_bytes, "",
+           "Most bytes of the answer, which ends on a frame; 256 KiB without it")
+      .at(ask::Door::kService)
+      .like("100000");
+  rows.push_back(ask::ignored_row("have",
+                                  "What the client was served before, in that order: objects with "
+                                  "window, error, splits",
+                                  "[{\"error\":50,\"splits\":3000}]"));
+  rows.back().is_json = true;
+  rows.push_back(
+      ask::ignored_row("fingerprint", "Fingerprint of the collection from which it was served"));
+  return rows;
+}
 
 std::vector<tools::Serving> held_servings(const Asked& asked) {
   const Question& q = asked.question;
@@ -60,25 +78,21 @@ std::vector<StreamHeld> held_of(const Asked& asked) {
   return held;
 }
 
-std::uint64_t most_bytes(const Asked& asked) {
+std::uint64_t most_bytes(const Asked& asked, const PieceQuestion& question) {
   const QuestionLimits& limits = asked.options.question;
-  const std::uint64_t asked_for = asked.question.count("max_bytes").value_or(limits.stream_bytes);
+  const std::uint64_t asked_for = question.max_bytes.value_or(limits.stream_bytes);
   check_count(asked_for, limits.most_stream_bytes, "bytes", "most_stream_bytes", "max_bytes");
   return asked_for;
 }
 
 }  // namespace
 
-std::span<const ParameterFact> stream_parameters() noexcept { return kStreamParameters; }
+ask::Parameters stream_parameters() { return described<PieceQuestion>(); }
 
 http::Response answer_stream(const Asked& asked) {
-  tools::Serving wanted;
-  wanted.window = asked.question.numbers("window");
-  if (!wanted.window.empty() && wanted.window.size() != 4) {
-    throw Problem(400, "a window has four numbers: xmin, ymin, xmax, ymax").at("window");
-  }
-  wanted.error = asked.question.number("error");
-  const std::uint64_t most = most_bytes(asked);
+  const auto question = read<PieceQuestion>(asked);
+  const tools::Serving& wanted = question.wanted;
+  const std::uint64_t most = most_bytes(asked, question);
   StreamRequest request;
   request.wanted = tools::predicate_of(wanted, asked.facts(), "window");
   request.tolerance = wanted.error;
@@ -98,12 +112,11 @@ http::Response answer_stream(const Asked& asked) {
       asked.terrain().stream(request, [&](std::span<const std::byte> bytes) {
         text.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       });
-  http::Response response = text_response(std::move(text), "application/vnd.ptin.stream");
+  http::Response response = answered(asked, std::move(text), asked.formats.front().media,
+                                     summary.cost, summary.certificate.error,
+                                     summary.certificate.complete && asked.facts().base_error == 0);
   response.add("Ptin-Splits", std::to_string(summary.splits));
   response.add("Ptin-Fingerprint", asked.collection->fingerprint);
-  add_cost(response, summary.cost);
-  add_certainty(response, summary.certificate.error,
-                summary.certificate.complete && asked.facts().base_error == 0);
   return response;
 }
 

@@ -82,7 +82,7 @@ std::string methods_of(const Endpoint* endpoint) {
 
 /// Whether the header Accept chooses between several types.
 bool chooses_by_accept(const Endpoint& endpoint, const Question& question) {
-  return endpoint.media.find(' ') != std::string_view::npos && !question.has("f");
+  return endpoint.formats.size() > 1 && !question.has("f");
 }
 
 std::string header_of(const Response& response, std::string_view name) {
@@ -313,6 +313,7 @@ Response TerrainService::compute(const Request& request, const Match& found,
                     catalogue_,
                     collection,
                     found.rest,
+                    found.endpoint->formats,
                     {lease ? lease->bytes() : 0, request.stop}};
   Response response;
   try {

@@ -20,11 +20,6 @@ using http::Problem;
 
 constexpr std::string_view kQuantizedMesh = "application/vnd.quantized-mesh";
 
-constexpr auto kTilesParameters = std::to_array<ParameterFact>(
-    {{"v", "string", "the version that layer.json tells: such an answer may be kept for ever", ""},
-     {"extensions", "string", "octvertexnormals, where the header Accept does not say so",
-      "octvertexnormals"}});
-
 struct TileNumber {
   std::int64_t level, x, y;
 };
@@ -74,11 +69,8 @@ std::shared_ptr<const tools::TerrainTileset> tileset(const Asked& asked) {
 }
 
 /// The error is in metres, whatever the unit of the file's heights.
-http::Response tile_response(tools::Tile tile, std::string_view media) {
-  http::Response response = text_response(std::move(tile.bytes), media);
-  add_cost(response, tile.cost);
-  add_certainty(response, tile.error, false);
-  return response;
+http::Response tile_response(const Asked& asked, tools::Tile tile, std::string_view media) {
+  return answered(asked, std::move(tile.bytes), media, tile.cost, tile.error, false);
 }
 
 http::Response layer_json(const Asked& asked) {
@@ -90,7 +82,13 @@ http::Response layer_json(const Asked& asked) {
 
 }  // namespace
 
-std::span<const ParameterFact> tiles_parameters() noexcept { return kTilesParameters; }
+ask::Parameters tiles_parameters() {
+  return {
+      ask::ignored_row("v",
+                       "The version that layer.json tells: such an answer may be kept for ever"),
+      ask::ignored_row("extensions", "octvertexnormals, where the header Accept does not say so",
+                       "octvertexnormals")};
+}
 
 http::Response answer_tiles(const Asked& asked) {
   if (asked.rest == "layer.json") return layer_json(asked);
@@ -103,7 +101,7 @@ http::Response answer_tiles(const Asked& asked) {
   std::optional<tools::Tile> tile =
       quantized(asked)->tile({number->level, number->x, number->y, has_normals, asked.limits});
   if (!tile) throw_no_tile();
-  http::Response response = tile_response(std::move(*tile), kQuantizedMesh);
+  http::Response response = tile_response(asked, std::move(*tile), kQuantizedMesh);
   response.add("Vary", "Accept");
   return response;
 }
@@ -126,7 +124,7 @@ http::Response answer_content(const Asked& asked) {
   std::optional<tools::Tile> content =
       tileset(asked)->content(number->level, number->x, number->y, asked.limits);
   if (!content) throw_no_tile();
-  return tile_response(std::move(*content), "model/gltf-binary");
+  return tile_response(asked, std::move(*content), "model/gltf-binary");
 }
 
 }  // namespace ptin::serve

@@ -16,13 +16,6 @@ namespace ptin::serve {
 
 namespace {
 
-/// What the page reads of its own address; the files are the same whatever it says.
-constexpr auto kViewerParameters = std::to_array<ParameterFact>(
-    {{"collection", "string", "the terrain that the page opens", "m"},
-     {"stream", "string", "instead of a collection: the address of a stream"},
-     {"service", "string", "the service that has the collection, where it is another one"},
-     {"vertices", "integer", "so many vertices are shown at most", "400000"}});
-
 /// A file as it is sent, made once.
 struct SentFile {
   tools::ViewerFile file;
@@ -57,7 +50,14 @@ http::Response response_of(const SentFile& sent, const http::Request& request) {
 
 }  // namespace
 
-std::span<const ParameterFact> viewer_parameters() noexcept { return kViewerParameters; }
+/// What the page reads of its own address; the files are the same whatever it says.
+ask::Parameters viewer_parameters() {
+  return {
+      ask::ignored_row("collection", "The terrain that the page opens", "m"),
+      ask::ignored_row("stream", "The address of a stream, instead of a collection"),
+      ask::ignored_row("service", "The service that has the collection, where it is another one"),
+      ask::ignored_row("vertices", "So many vertices are shown at most", "400000")};
+}
 
 http::Response answer_viewer(const Asked& asked) {
   const std::string_view name = asked.rest.empty() ? "index.html" : asked.rest;

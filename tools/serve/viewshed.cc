@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What one observer sees, as a picture or as GeoJSON.
+#include "tools/ask/viewshed.h"
+
 #include <array>
 #include <cmath>
 #include <string>
@@ -18,44 +20,30 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr auto kViewshedParameters = std::to_array<ParameterFact>(
-    {{"coords", "string", "the observer's position as WKT, POINT", "POINT(-118.3 34.34)", true},
-     {"height", "number", "of the observer's eye above ground; 2 without it", "2"},
-     {"absolute", "boolean", "the height is not above ground but that of the terrain's heights",
-      "false"},
-     {"target", "number", "height of targets above ground; 0 without it", "0"},
-     {"radius", "number", "how far targets are looked at, over ground, in the unit of heights",
-      "5000", true},
-     {"curvature", "number", "coefficient of the Earth's curvature and refraction; 0: flat",
-      "0.857"},
-     kErrorParameter,
-     kVerticesParameter,
-     kCrsParameter,
-     {"f", "string", "png (pixels of the terrain, see Ptin-Bounds) or geojson (vertices)", "png"}});
-constexpr auto kViewshedFormats =
-    std::to_array<OfferedFormat>({{"png", "image/png"}, {"geojson", kGeoJson}});
+struct ObserverQuestion : ask::ViewshedQuestion {
+  std::string coords, crs;
+};
 
-ViewshedRequest request_of(const Asked& asked, const Places& places, bool as_picture) {
-  const std::vector<MapPoint> eye = points_of_wkt(asked.question.needed("coords"), "coords");
+ask::Parameters parameters_of(ObserverQuestion& question) {
+  ask::Parameters rows;
+  rows.push_back(ask::coords_row(question.coords, "The observer's position as WKT, POINT",
+                                 "POINT(-118.3 34.34)"));
+  ask::add_viewshed(rows, question);
+  rows.push_back(ask::crs_row(question.crs));
+  return rows;
+}
+
+ViewshedRequest request_of(const Asked& asked, const ObserverQuestion& question,
+                           const Places& places, bool as_picture) {
+  const std::vector<MapPoint> eye = points_of_wkt(question.coords, "coords");
   if (eye.size() != 1) throw http::Problem(400, "one observer has one position").at("coords");
-  ViewshedRequest request;
+  ViewshedRequest request = question.request;
   request.eye = places.to_terrain(eye[0]);
-  request.eye_height = asked.question.number("height", 2.0);
-  request.absolute = asked.question.flag("absolute");
-  request.target_height = asked.question.number("target", 0.0);
-  request.radius = asked.question.number("radius", 0.0);
-  if (request.radius <= 0) {
-    throw http::Problem(400, "the radius must be above 0").at("radius");
-  }
-  const Ground& ground = asked.collection->ground;
-  const MapPoint per_unit = ground.per_map_unit(request.eye);
-  request.ground_per_map_x = per_unit.x;
-  request.ground_per_map_y = per_unit.y;
-  request.curvature = {asked.question.number("curvature", Curvature{}.coefficient),
-                       ground.earth_diameter};
+  request.radius = question.radius;
+  ask::set_ground(request, asked.collection->ground);
   request.pixels = as_picture;
   request.list_vertices = !as_picture;
-  request.detail = detail_of(asked);
+  check_detail(asked, request.detail);
   request.limits = engine_limits(asked);
   return request;
 }
@@ -98,7 +86,7 @@ std::string bounds_text(const Viewshed& seen) {
 std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& places) {
   check_count(seen.vertices.size(), asked.options.question.vertices, "vertices", "vertices",
               "radius");
-  LongText text(asked);
+  LongText text = long_text(asked);
   text.add(R"({"type":"FeatureCollection","features":[)");
   for (std::size_t i = 0; i < seen.vertices.size(); ++i) {
     const Viewshed::Target& target = seen.vertices[i];
@@ -134,25 +122,20 @@ void check_pixels(const Asked& asked, const ViewshedRequest& request) {
 
 }  // namespace
 
-std::span<const ParameterFact> viewshed_parameters() noexcept { return kViewshedParameters; }
+ask::Parameters viewshed_parameters() { return described<ObserverQuestion>(); }
 
 http::Response answer_viewshed(const Asked& asked) {
-  const bool as_picture = format_of(asked, kViewshedFormats).name == "png";
-  const Places places(asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
-                      asked.request.share);
-  const ViewshedRequest request = request_of(asked, places, as_picture);
+  const ask::Format& format = format_of(asked);
+  const bool as_picture = format.name == "png";
+  const auto question = read<ObserverQuestion>(asked);
+  const Places places = places_of(asked, question.crs);
+  const ViewshedRequest request = request_of(asked, question, places, as_picture);
   if (as_picture) check_pixels(asked, request);
   const Viewshed seen = viewshed_of(asked, request);
-  http::Response response;
-  if (as_picture) {
-    response = text_response(png_of(seen), "image/png");
-    response.add("Ptin-Bounds", bounds_text(seen));
-  } else {
-    response = text_response(geojson_of(seen, asked, places), kGeoJson);
-  }
-  add_choice(response, asked);
-  add_cost(response, seen.cost);
-  add_certainty(response, seen.certified_error, seen.exact);
+  http::Response response =
+      answered(asked, as_picture ? png_of(seen) : geojson_of(seen, asked, places), format.media,
+               seen.cost, seen.certified_error, seen.exact);
+  if (as_picture) response.add("Ptin-Bounds", bounds_text(seen));
   return response;
 }
 

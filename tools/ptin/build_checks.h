@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Checks of options that are numbers. CLI11 puts the name of the option, or of the argument, before
-// what they say.
+// Checks of the options of `build` that are numbers. CLI11 puts the name of the option, or of the
+// argument, before what they say.
 #pragma once
 
 #include <cmath>
@@ -10,6 +10,8 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+
+#include "tools/ask/parameter.h"
 
 namespace ptin::tools {
 
@@ -61,6 +63,24 @@ enum class NumberRange : std::uint8_t {
             if (!is_number || is_in(range, number)) return std::string();
             return "must be " + words_of(range) + (unit.empty() ? "" : ", " + unit) + "; " + text +
                    " is none";
+          },
+          ""};
+}
+
+/// The check of a length or a height that must be a plain number, since it is asked for before anybody
+/// knows the source's units.
+/// @param unit  "in CRS units".
+[[nodiscard]] inline CLI::Validator plain_measure(NumberRange range, const std::string& unit) {
+  return {[range, unit](const std::string& text) {
+            const std::optional<Length> length = length_of(text);
+            const std::optional<double> number =
+                length ? std::optional(length->number) : ask::number_in(text);
+            if (!number || !is_in(range, *number)) {
+              return "must be " + words_of(range) + ", " + unit + "; " + text + " is none";
+            }
+            if (!length || !length->has_unit()) return std::string();
+            return "must be a plain number, " + unit +
+                   ": those of the source are not known before it is read; " + text + " has a unit";
           },
           ""};
 }

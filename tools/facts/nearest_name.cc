@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ptin/nearest_name.h"
+#include "tools/facts/nearest_name.h"
 
 #include <algorithm>
 #include <vector>

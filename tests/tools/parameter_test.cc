@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A question is written once: a row that is added to it appears wherever questions are read, and a
+// value that is none is refused in the same words at both doors.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/error.h"
+#include "tests/tools/program.h"
+#include "tools/ask/field.h"
+#include "tools/ask/groups.h"
+#include "tools/http/problem.h"
+#include "tools/ptin/command_line.h"
+#include "tools/ptin/man_page.h"
+#include "tools/serve/answer_parts.h"
+#include "tools/serve/questions.h"
+
+namespace ptin::tools {
+namespace {
+
+/// A question that there is not, with each kind of parameter.
+struct Smoothing {
+  std::optional<double> error, reach;
+  std::uint64_t rounds = 3;
+  std::string kernel = "cubic";
+  std::vector<double> weights;
+  bool is_slow = false;
+};
+
+ask::Parameters parameters_of(Smoothing& smoothing) {
+  return {ask::error_row(smoothing.error, "Certified error allowed"),
+          {.name = "reach",
+           .into = &smoothing.reach,
+           .metavar = "R",
+           .unit = ask::Unit::kGround,
+           .range = ask::kPositive,
+           .excludes = "error",
+           .example = "50",
+           .help = "How far to smooth"},
+          {.name = "rounds",
+           .into = &smoothing.rounds,
+           .metavar = "N",
+           .range = {.least = 1, .most = 9},
+           .shows_default = true,
+           .example = "2",
+           .help = "How often"},
+          {.name = "kernel",
+           .words = "-K,--kernel",
+           .into = &smoothing.kernel,
+           .metavar = "NAME",
+           .choices = {"cubic", "linear"},
+           .example = "linear",
+           .help = "Which kernel"},
+          {.name = "weights",
+           .into = &smoothing.weights,
+           .metavar = "W...",
+           .range = ask::kNotNegative,
+           .least_values = 2,
+           .most_values = 4,
+           .needs = "kernel",
+           .example = "1,2",
+           .help = "Its weights"},
+          {.name = "slow", .into = &smoothing.is_slow, .example = "true", .help = "Take time"}};
+}
+
+Smoothing& last_asked() {
+  static Smoothing smoothing;
+  return smoothing;
+}
+
+Declared declare_smooth(Context&) {
+  last_asked() = {};
+  return {parameters_of(last_asked()), [] { return 0; }};
+}
+
+const std::vector<Command>& smooth_alone() {
+  static const std::vector<Command> all = {
+      {"smooth", "Smooth a terrain", "Example:\n  ptin smooth\n", declare_smooth}};
+  return all;
+}
+
+/// Why words mean nothing; empty: they do.
+std::string fault_of(std::vector<std::string> words) {
+  Context context;
+  CommandLine line(context, smooth_alone());
+  words.insert(words.begin(), "smooth");
+  return line.parse(words).fault;
+}
+
+struct Refused {
+  std::string detail, parameter;
+};
+/// The refusal of a request; its parameters are name, value, name, value.
+Refused refusal_of(const std::vector<std::pair<std::string, std::string>>& parameters) {
+  http::Request request;
+  request.method = "GET";
+  request.parameters = {parameters.begin(), parameters.end()};
+  Smoothing smoothing;
+  const ask::Parameters rows = parameters_of(smoothing);
+  try {
+    serve::Question(request, rows).read(rows);
+    return {};
+  } catch (const http::Problem& problem) {
+    return {problem.detail(), problem.parameter()};
+  }
+}
+
+TEST(Parameter, IsReadAtBothDoors) {
+  EXPECT_EQ(fault_of({"--reach", "5m", "--rounds", "4", "-K", "LINEAR", "--weights", "1", "2.5",
+                      "--slow"}),
+            "");
+  EXPECT_EQ(last_asked().reach, 5.0);
+  EXPECT_EQ(last_asked().rounds, 4U);
+  EXPECT_EQ(last_asked().kernel, "linear");
+  EXPECT_EQ(last_asked().weights, (std::vector<double>{1, 2.5}));
+  EXPECT_TRUE(last_asked().is_slow);
+
+  http::Request request;
+  request.method = "POST";
+  request.headers = {{"content-type", "application/json"}};
+  request.body = R"({"reach": 5, "rounds": 4, "kernel": "linear", "weights": [1, 2.5], "slow": true})";
+  Smoothing smoothing;
+  const ask::Parameters rows = parameters_of(smoothing);
+  serve::Question(request, rows).read(rows);
+  EXPECT_EQ(smoothing.reach, 5.0);
+  EXPECT_EQ(smoothing.rounds, 4U);
+  EXPECT_EQ(smoothing.kernel, "linear");
+  EXPECT_EQ(smoothing.weights, (std::vector<double>{1, 2.5}));
+  EXPECT_TRUE(smoothing.is_slow);
+}
+
+TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
+  Context context;
+  const CommandLine line(context, smooth_alone());
+  const std::vector<OptionFacts> options = line.options_of(0);
+  const std::string manual = man_page(smooth_alone()), script = bash_script(smooth_alone());
+  const std::vector<serve::Endpoint> endpoints = {
+      {"/smooth", "smooth", true, "A smoothed terrain", serve::described<Smoothing>(), {},
+       http::Lane::kPoint, serve::Reserves::kNothing, nullptr}};
+  const nlohmann::json operation = serve::openapi(endpoints, {})["paths"]["/smooth"]["get"];
+  for (const std::string name : {"error", "reach", "rounds", "kernel", "weights", "slow"}) {
+    SCOPED_TRACE(name);
+    const auto has_name = [&](const OptionFacts& o) { return o.name() == "--" + name; };
+    EXPECT_EQ(std::count_if(options.begin(), options.end(), has_name), 1);
+    EXPECT_NE(manual.find("\\-\\-" + name), std::string::npos);
+    EXPECT_NE(script.find(" --" + name), std::string::npos);
+    const auto& all = operation["parameters"];
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [&](const auto& p) { return p["name"] == name; }),
+              1);
+  }
+  const auto schema = [&](std::size_t i) { return operation["parameters"][i]["schema"]; };
+  EXPECT_EQ(schema(1), nlohmann::json::parse(
+                           R"({"type":"number","minimum":0.0,"exclusiveMinimum":true})"));
+  EXPECT_EQ(schema(2),
+            nlohmann::json::parse(R"({"type":"integer","minimum":1.0,"maximum":9.0})"));
+  EXPECT_EQ(schema(3), nlohmann::json::parse(R"({"type":"string","enum":["cubic","linear"]})"));
+  EXPECT_EQ(schema(4), nlohmann::json::parse(R"({"type":"array","minItems":2,"maxItems":4,
+                                                 "items":{"type":"number","minimum":0.0}})"));
+  EXPECT_EQ(operation["parameters"][4]["example"], nlohmann::json::parse("[1,2]"));
+}
+
+/// One sentence for both doors, which the command line has with two hyphens.
+TEST(Parameter, IsRefusedInTheSameWords) {
+  const struct {
+    std::vector<std::string> words;
+    std::vector<std::pair<std::string, std::string>> parameters;
+    const char* sentence;
+  } all[] = {
+      {{"--rounds", "10"}, {{"rounds", "10"}}, "must be a whole number from 1 to 9; 10 is none"},
+      {{"--rounds", "2.5"}, {{"rounds", "2.5"}}, "must be a whole number from 1 to 9; 2.5 is none"},
+      {{"--kernel", "linaer"},
+       {{"kernel", "linaer"}},
+       "linaer is none of cubic, linear; did you mean linear?"},
+      {{"--kernel", "cubic", "--weights", "1", "-1"},
+       {{"kernel", "cubic"}, {"weights", "1,-1"}},
+       "must be a finite number >= 0; -1 is none"},
+  };
+  for (const auto& one : all) {
+    SCOPED_TRACE(one.sentence);
+    const std::string name = one.parameters.back().first;
+    EXPECT_EQ(fault_of(one.words), "--" + name + ": " + one.sentence);
+    const Refused refused = refusal_of(one.parameters);
+    EXPECT_EQ(refused.detail, name + ": " + one.sentence);
+    EXPECT_EQ(refused.parameter, name);
+  }
+  EXPECT_EQ(fault_of({"--error", "1", "--reach", "2"}),
+            "--reach: excludes --error; give one of them");
+  EXPECT_EQ(refusal_of({{"error", "1"}, {"reach", "2"}}).detail,
+            "reach: excludes error; give one of them");
+  EXPECT_EQ(fault_of({"--weights", "1", "2"}), "--weights: needs --kernel; give both");
+  EXPECT_EQ(refusal_of({{"weights", "1,2"}}).parameter, "weights");
+  EXPECT_EQ(refusal_of({{"weights", "1"}, {"kernel", "cubic"}}).parameter, "weights");
+  EXPECT_EQ(refusal_of({{"error", "inf"}}).parameter, "error");
+}
+
+/// An answer that there is not.
+struct Hill {
+  double height;
+  std::string name;
+  bool is_bald;
+};
+
+const ask::Fields<Hill>& hill_fields() {
+  using ask::As;
+  using ask::Door;
+  using ask::Json;
+  static const ask::Fields<Hill> fields = {
+      {{"name", "string", "", "How it is called."}, [](const Hill& h) -> Json { return h.name; }},
+      {{"top.height", "number or null", "height's unit", "Of its top."},
+       [](const Hill& h) -> Json { return h.height; }},
+      {{"bald", "boolean", "", "Nothing grows on it.", Door::kProgram},
+       [](const Hill& h) -> Json { return h.is_bald ? Json(true) : ask::kLeftOut; }},
+      {{"note", "string", "", "For programs.", Door::kBoth, As::kObject},
+       [](const Hill&) -> Json { return "-"; }}};
+  return fields;
+}
+
+TEST(Field, StandsInEveryFormatOfItsDoor) {
+  const Hill hill{12.5, "Old, Man", true}, other{std::nan(""), "x", false};
+  using ask::As;
+  using ask::Door;
+  EXPECT_EQ(ask::object_of(hill_fields(), hill, Door::kProgram).dump(),
+            R"({"name":"Old, Man","top":{"height":12.5},"bald":true,"note":"-"})");
+  EXPECT_EQ(ask::object_of(hill_fields(), other, Door::kProgram).dump(),
+            R"({"name":"x","top":{"height":null},"note":"-"})");
+  EXPECT_EQ(ask::object_of(hill_fields(), hill, Door::kService).dump(),
+            R"({"name":"Old, Man","top":{"height":12.5},"note":"-"})");
+  const auto table = ask::columns_of(hill_fields(), Door::kProgram, As::kTableRow, {"top.height"});
+  ask::LongText csv;
+  ask::add_csv_heading(csv, table);
+  for (const Hill& h : {hill, other}) ask::add_csv_row(csv, table, h);
+  EXPECT_EQ(csv.take(), "top_height,name,bald\n12.5,\"Old, Man\",1\n,x,\n");
+  const auto feature = ask::columns_of(hill_fields(), Door::kService, As::kFeature);
+  const auto layer = ask::layer_fields_of(feature);
+  ASSERT_EQ(layer.size(), 2U);
+  EXPECT_EQ(layer[1].name, "top_height");
+  EXPECT_EQ(layer[1].type, VectorFile::FieldType::kReal);
+  EXPECT_EQ(std::get<std::string>(ask::layer_values_of(feature, hill)[0]), "Old, Man");
+}
+
+}  // namespace
+}  // namespace ptin::tools

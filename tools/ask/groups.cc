@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ask/groups.h"
+
+#include <cmath>
+#include <utility>
+
+#include "engine/error.h"
+#include "tools/facts/human.h"
+#include "tools/facts/quantity.h"
+
+namespace ptin::ask {
+
+namespace {
+
+/// The coefficient of curvature for a radius of the Earth that is so many times as long: "4/3",
+/// "1.333".
+/// @throws Error invalid_argument  no number above 0, nor two with a stroke between them
+double coefficient_of_factor(const std::string& text) {
+  const std::size_t stroke = text.find('/');
+  const auto part = [](const std::string& of) { return number_in(of).value_or(-1.0); };
+  const double over = part(text.substr(0, stroke));
+  const double under = stroke == std::string::npos ? 1.0 : part(text.substr(stroke + 1));
+  const double coefficient = under / over;
+  if (over > 0 && under > 0 && std::isfinite(coefficient)) return coefficient;
+  refuse("\"" + text + "\" is no factor of the Earth's radius; expected a number above 0, as 4/3");
+}
+
+}  // namespace
+
+Parameter error_row(std::optional<double>& error, std::string help) {
+  return {.name = "error",
+          .into = &error,
+          .metavar = "E",
+          .unit = Unit::kHeight,
+          .range = kTolerance,
+          .example = "5",
+          .help = std::move(help)};
+}
+
+void add_detail(Parameters& rows, DetailRequest& detail, const std::string& error_more,
+                const std::string& vertices_help, Door doors) {
+  rows.push_back(error_row(detail.tolerance, "Certified error allowed" + error_more));
+  rows.back().doors = doors;
+  rows.add("vertices", &detail.vertices, "N", vertices_help).excluding("error").at(doors);
+}
+
+void add_region(Parameters& rows, RegionText& region, RegionKinds kinds, Door doors) {
+  if (is_at(doors, Door::kService)) {
+    rows.add("bbox", &region.window, "",
+             "West, south, east, north; across the antimeridian west is larger than "
+             "east")
+        .values(4, 6)
+        .at(Door::kService)
+        .like("-118.31,34.34,-118.3,34.35");
+  }
+  if (!is_at(doors, Door::kProgram)) return;
+  rows.add("window", &region.window, "XMIN YMIN XMAX YMAX", "A window")
+      .in(Unit::kMap)
+      .values(4, 4)
+      .at(Door::kProgram);
+  if (kinds == RegionKinds::kWindow) return;
+  rows.add("polygon", &region.polygon, "WKT_OR_FILE", "A polygon: WKT, or a file that holds it")
+      .excluding("window")
+      .at(Door::kProgram);
+  if (kinds == RegionKinds::kWithInside) return;
+  rows.add("point", &region.point, "X Y", "A point")
+      .in(Unit::kMap)
+      .values(2, 2)
+      .excluding("window polygon")
+      .at(Door::kProgram);
+}
+
+void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
+                const std::string& interval_help, Door doors) {
+  rows.add("level", &levels.levels, "H...", level_help)
+      .spelled("--level,--fl")
+      .in(Unit::kHeight)
+      .values(1, kAnyNumberOfValues)
+      .at(doors);
+  rows.add("interval", &levels.interval, "D", interval_help)
+      .spelled("-i,--interval")
+      .in(Unit::kHeight)
+      .within(kPositive)
+      .excluding("level")
+      .at(doors)
+      .like("100");
+  rows.add("base", &levels.base, "B", "Where the intervals are counted from; 0 without it")
+      .spelled("--base,--off")
+      .in(Unit::kHeight)
+      .needing("interval")
+      .at(doors)
+      .like("0");
+}
+
+std::vector<double> levels_of(const Levels& levels, const StoreFacts& facts) {
+  if (!levels.interval) return levels.levels;
+  if (facts.min_height > facts.max_height) return {levels.base};
+  std::vector<double> heights =
+      levels_at(*levels.interval, levels.base, facts.min_height, facts.max_height);
+  // The answer is empty then, as it is with a level that nothing crosses.
+  if (heights.empty()) {
+    const double steps = std::ceil((facts.max_height - levels.base) / *levels.interval);
+    heights.push_back(levels.base + steps * *levels.interval);
+  }
+  return heights;
+}
+
+void add_curvature(Parameters& rows, double& coefficient) {
+  rows.add("curvature", &coefficient, "C",
+           "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat "
+           "Earth, 1 one without refraction, 0.75 the 4/3 Earth of radio")
+      .within({.least = 0, .most = 1})
+      .with_default()
+      .like("0.857")
+      .hinting("An Earth of so many times its radius is --refraction ");
+  rows.add(
+          "refraction",
+          [&coefficient](const std::string& text) { coefficient = coefficient_of_factor(text); },
+          "K",
+          "Instead: how many times as long the Earth's radius is taken for "
+          "refraction, as 4/3, which is usual for radio links (--curvature 0.75)")
+      .excluding("curvature")
+      .at(Door::kProgram);
+}
+
+Parameter by_row(AnswerBy& by) {
+  return {.name = "by",
+          .into =
+              [&by](const std::string& name) {
+                by = name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars;
+              },
+          .metavar = "TEXT",
+          .choices = {"stars", "splits"},
+          .doors = Door::kProgram,
+          .help =
+              "stars: look up the triangles that live at the level; splits: refine T0, as the "
+              "paper has it. An exact answer is the same, at a level both are true (default "
+              "stars)"};
+}
+
+Parameter threads_row(int& threads, std::string help, double most) {
+  return {.name = "threads",
+          .into = &threads,
+          .metavar = "N",
+          .range = {.least = 1, .most = most},
+          .doors = Door::kProgram,
+          .help = std::move(help)};
+}
+
+Parameter memory_row(std::optional<std::uint64_t>& memory, std::string help) {
+  return {.name = "memory",
+          .into = [&memory](const std::string& text) { memory = tools::parse_memory(text, {}); },
+          .metavar = "SIZE",
+          .doors = Door::kProgram,
+          .help = std::move(help)};
+}
+
+Parameter crs_row(std::string& crs) {
+  return {.name = "crs",
+          .into = &crs,
+          .doors = Door::kService,
+          .example = "CRS84",
+          .help =
+              "CRS of positions that come and go: CRS84 (longitude, latitude; without it), "
+              "native, or an EPSG code or OGC URI"};
+}
+
+Parameter coords_row(std::string& coords, std::string help, std::string_view example) {
+  return {.name = "coords",
+          .into = &coords,
+          .required = Door::kService,
+          .doors = Door::kService,
+          .example = example,
+          .help = std::move(help)};
+}
+
+Parameter format_row(std::string& format, std::span<const Format> formats) {
+  Parameter row{.name = "f",
+                .into = &format,
+                .doors = Door::kService,
+                .example = formats.front().name,
+                .help = "The format of the answer; without it the header Accept chooses"};
+  for (const Format& one : formats) row.choices.push_back(one.name);
+  return row;
+}
+
+Parameter ignored_row(std::string_view name, std::string help, std::string_view example) {
+  return {.name = name,
+          .into = [](const std::string&) {},
+          .doors = Door::kService,
+          .example = example,
+          .help = std::move(help)};
+}
+
+}  // namespace ptin::ask

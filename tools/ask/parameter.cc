@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/ask/parameter.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <type_traits>
+
+#include "engine/crs/ground.h"
+#include "engine/crs/height_unit.h"
+#include "engine/error.h"
+#include "tools/facts/human.h"
+#include "tools/facts/nearest_name.h"
+#include "tools/output/file_name.h"
+#include "tools/region/on_terrain.h"
+
+namespace ptin::ask {
+
+namespace {
+
+/// The names of a list between blanks.
+std::vector<std::string_view> names_in(std::string_view list) {
+  std::vector<std::string_view> names;
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find(' '), list.size());
+    names.push_back(list.substr(0, end));
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return names;
+}
+
+const Parameter* find(std::span<const Parameter> parameters, std::string_view name) {
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const Parameter& p) { return p.name == name; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+/// "in the height's unit"; empty where there is none to tell.
+std::string words_of(Unit unit, Door door) {
+  switch (unit) {
+    case Unit::kMap:
+      return "in map units";
+    case Unit::kHeight:
+      return door == Door::kProgram ? "in the height's unit" : "in the unit of the heights";
+    case Unit::kGround:
+      return "in map units, or metres in a geographic CRS";
+    case Unit::kNone:
+      break;
+  }
+  return {};
+}
+
+bool has_own_unit(const Parameter& p, Door door) {
+  return door == Door::kProgram && (p.unit == Unit::kHeight || p.unit == Unit::kGround);
+}
+
+[[noreturn]] void refuse_value(const Parameter& p, Door door, const std::string& words,
+                               const std::string& text) {
+  refuse("must be " + words + "; " + (text.empty() ? "\"\"" : tools::shown(text)) + " is none" +
+             (p.hint.empty() || door == Door::kService
+                  ? ""
+                  : ". " + std::string(p.hint) + tools::shown(text)),
+         name_at(p, door));
+}
+
+std::uint64_t whole_of(const Parameter& p, Door door, const std::string& text) {
+  const std::string_view digits = trimmed(text);
+  std::uint64_t number = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool is_one = fault == std::errc() && end == digits.data() + digits.size();
+  if (is_one && p.range.holds(static_cast<double>(number))) return number;
+  refuse_value(p, door, words_of(p.range, true), text);
+}
+
+bool truth_of(const Parameter& p, Door door, const std::string& text) {
+  if (text.empty() || text == "false" || text == "0") return false;
+  if (text == "true" || text == "1") return true;
+  refuse_value(p, door, "true or false", text);
+}
+
+/// The text, or the choice that it is.
+std::string choice_of(const Parameter& p, Door door, const std::string& text) {
+  if (p.choices.empty()) return text;
+  std::vector<std::string> names(p.choices.begin(), p.choices.end());
+  for (const std::string& name : names) {
+    if (tools::lower_case(name) == tools::lower_case(text)) return name;
+  }
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string nearest = tools::nearest_name(text, names);
+  refuse(tools::shown(text) + " is none of " + list +
+             (nearest.empty() ? "" : "; did you mean " + nearest + "?"),
+         name_at(p, door));
+}
+
+/// Metres in the unit of plain numbers.
+double metres_of_plain(Unit unit, const CrsFacts& crs, const std::string& parameter,
+                       const std::string& text) {
+  std::optional<double> metres;
+  if (unit == Unit::kHeight) {
+    metres = metres_in(height_unit_named(unit_of_ground(crs)));
+  } else if (crs.geographic) {
+    metres = 1.0;
+  } else if (const auto of_plane = metres_per_map_unit(crs, {})) {
+    metres = of_plane->x;
+  }
+  if (metres) return *metres;
+  refuse(std::string("the unit of the terrain's ") + (unit == Unit::kHeight ? "heights" : "map") +
+             " is unknown, so " + text + " cannot be turned into it; give a number without a unit",
+         parameter);
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+std::string name_at(const Parameter& p, Door door) {
+  if (door == Door::kService) return std::string(p.name);
+  if (p.words.empty()) return "--" + std::string(p.name);
+  const std::size_t begin = p.words.find("--");
+  if (begin == std::string_view::npos) return std::string(p.words);
+  return std::string(p.words.substr(begin, p.words.find(',', begin) - begin));
+}
+
+std::string help_at(const Parameter& p, Door door) {
+  const std::string unit = words_of(p.unit, door);
+  if (unit.empty()) return p.help;
+  const char* const own = !has_own_unit(p, door)    ? ""
+                          : p.unit == Unit::kHeight ? ", or as 50cm"
+                                                    : ", or as 50m, 5km, 3mi";
+  return p.help + " (" + unit + own + ")";
+}
+
+std::string default_of(const Parameter& p) {
+  return std::visit(
+      [](const auto& into) -> std::string {
+        using Type = std::decay_t<decltype(into)>;
+        if constexpr (std::is_same_v<Type, std::string*>) return *into;
+        if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*into);
+        if constexpr (std::is_same_v<Type, int*> || std::is_same_v<Type, std::uint32_t*> ||
+                      std::is_same_v<Type, std::uint64_t*>) {
+          return std::to_string(*into);
+        }
+        return {};
+      },
+      p.into);
+}
+
+bool is_whole(const Parameter& p) noexcept {
+  return std::holds_alternative<int*>(p.into) ||
+         std::holds_alternative<std::vector<int>*>(p.into) ||
+         std::holds_alternative<std::uint32_t*>(p.into) ||
+         std::holds_alternative<std::uint64_t*>(p.into) ||
+         std::holds_alternative<std::optional<std::uint64_t>*>(p.into);
+}
+
+bool is_text(const Parameter& p) noexcept {
+  return std::holds_alternative<std::string*>(p.into) ||
+         std::holds_alternative<std::vector<std::string>*>(p.into) ||
+         std::holds_alternative<std::function<void(const std::string&)>>(p.into);
+}
+
+bool is_list(const Parameter& p) noexcept {
+  return p.most_values > 1 || std::holds_alternative<std::optional<Window>*>(p.into);
+}
+
+std::optional<double> number_in(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (text.empty() || end != text.data() + text.size()) return std::nullopt;
+  // 1e999 is a number for its range to refuse; 1e-999 is 0.
+  if (fault == std::errc::result_out_of_range)
+    return std::strtod(std::string(text).c_str(), nullptr);
+  return fault == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+std::string words_of(const Range& range, bool whole) {
+  const bool has_least = range.least > kFinite.least, has_most = range.most < kFinite.most;
+  const std::string kind = whole                       ? "a whole number"
+                           : has_least && has_most     ? "a number"
+                           : std::isfinite(range.most) ? "a finite number"
+                                                       : "a number";
+  const double least = whole && !has_least ? 0 : range.least;
+  if (has_least && has_most) {
+    return kind + " from " + tools::short_number(least) + " to " + tools::short_number(range.most);
+  }
+  if (!has_least && !whole) return kind;
+  return kind + (range.is_above ? " > " : " >= ") + tools::short_number(least);
+}
+
+double Reading::number_of(const Parameter& p, const std::string& text) const {
+  std::optional<double> number = number_in(text);
+  if (!number && has_own_unit(p, door_)) {
+    if (const auto length = tools::length_of(text)) number = length->number;
+  }
+  // Over HTTP no number is infinite: JSON has none.
+  const bool is_too_far = door_ == Door::kService && number && !std::isfinite(*number);
+  if (number && p.range.holds(*number) && !is_too_far) return *number;
+  const std::string unit = words_of(p.unit, door_);
+  std::string words = words_of(p.range) + (unit.empty() ? "" : ", " + unit);
+  if (!number && has_own_unit(p, door_)) {
+    words += ", or with a unit behind it (" + tools::known_length_units() + "), as 10ft";
+  }
+  refuse_value(p, door_, words, text);
+}
+
+void Reading::put(const Parameter& p, const std::string& text, double& number) {
+  number = number_of(p, text);
+  if (!has_own_unit(p, door_)) return;
+  const std::optional<tools::Length> length = tools::length_of(text);
+  if (length && length->has_unit()) {
+    waiting_.push_back({name_at(p, door_), text, *length, p.unit, &number});
+  }
+}
+
+void Reading::take(const Parameter& p, std::span<const std::string> values) {
+  given_[std::string(p.name)] = true;
+  const bool is_window = std::holds_alternative<std::optional<Window>*>(p.into);
+  if (is_list(p) && !is_window &&
+      (values.size() < p.least_values || values.size() > p.most_values)) {
+    refuse("takes " + tools::counted(p.least_values, "value") +
+               (p.most_values > p.least_values ? " or more" : "") + "; " +
+               std::to_string(values.size()) + (values.size() == 1 ? " was" : " were") + " given",
+           name_at(p, door_));
+  }
+  const std::string text = values.empty() ? std::string() : values.back();
+  const auto whole = [&] { return whole_of(p, door_, text); };
+  struct Put {
+    Reading& reading;
+    const Parameter& p;
+    std::span<const std::string> values;
+    const std::string& text;
+    const decltype(whole)& number;
+
+    void operator()(bool* into) const {
+      *into = values.empty() || truth_of(p, reading.door_, text);
+    }
+    void operator()(double* into) const { reading.put(p, text, *into); }
+    void operator()(std::optional<double>* into) const { reading.put(p, text, into->emplace()); }
+    void operator()(std::vector<double>* into) const {
+      into->resize(values.size());
+      for (std::size_t i = 0; i < values.size(); ++i) reading.put(p, values[i], (*into)[i]);
+    }
+    void operator()(int* into) const { *into = static_cast<int>(number()); }
+    void operator()(std::vector<int>* into) const {
+      into->clear();
+      for (const std::string& value : values) {
+        into->push_back(static_cast<int>(whole_of(p, reading.door_, value)));
+      }
+    }
+    void operator()(std::uint32_t* into) const { *into = static_cast<std::uint32_t>(number()); }
+    void operator()(std::uint64_t* into) const { *into = number(); }
+    void operator()(std::optional<std::uint64_t>* into) const { *into = number(); }
+    void operator()(std::string* into) const { *into = choice_of(p, reading.door_, text); }
+    void operator()(std::vector<std::string>* into) const {
+      into->assign(values.begin(), values.end());
+    }
+    void operator()(std::optional<Window>* into) const {
+      std::vector<double> numbers;
+      for (const std::string& value : values) numbers.push_back(reading.number_of(p, value));
+      *into = tools::window_of(numbers, name_at(p, reading.door_), reading.door_ == Door::kService);
+    }
+    void operator()(const std::function<void(const std::string&)>& read) const {
+      const std::string value = choice_of(p, reading.door_, text);
+      try {
+        read(value);
+      } catch (const Error& e) {
+        throw Error(e.code(), e.message(), name_at(p, reading.door_));
+      }
+    }
+  };
+  std::visit(Put{*this, p, values, text, whole}, p.into);
+}
+
+void Reading::check(std::span<const Parameter> parameters) const {
+  for (const Parameter& p : parameters) {
+    if (!is_at(p.doors, door_)) continue;
+    const std::string name = name_at(p, door_);
+    if (!has(p.name)) {
+      if (!is_at(p.required, door_)) continue;
+      refuse("is required: " + help_at(p, door_) +
+                 (p.example.empty() ? "" : ", as " + std::string(p.example)),
+             name);
+    }
+    for (const std::string_view other : names_in(p.excludes)) {
+      const Parameter* const given = has(other) ? find(parameters, other) : nullptr;
+      if (given != nullptr)
+        refuse("excludes " + name_at(*given, door_) + "; give one of them", name);
+    }
+    for (const std::string_view other : names_in(p.needs)) {
+      const Parameter* const needed = has(other) ? nullptr : find(parameters, other);
+      if (needed != nullptr) refuse("needs " + name_at(*needed, door_) + "; give both", name);
+    }
+  }
+}
+
+void Reading::settle(const CrsFacts& crs) {
+  for (const Waiting& w : waiting_) {
+    *w.number = w.length.in(metres_of_plain(w.unit, crs, w.parameter, w.text));
+  }
+  waiting_.clear();
+}
+
+}  // namespace ptin::ask

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A parameter of a question: one row says what it is called, where its value goes, which values mean
+// something and what people are told. The command line, HTTP, OpenAPI, the manual page and the
+// completion script read rows; nothing else writes these facts.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "engine/crs/crs_facts.h"
+#include "engine/query/terrain.h"
+#include "tools/facts/quantity.h"
+
+namespace ptin::ask {
+
+/// Where questions are asked: on the command line, and over HTTP.
+enum class Door : std::uint8_t { kNone = 0, kProgram = 1, kService = 2, kBoth = 3 };
+[[nodiscard]] constexpr bool is_at(Door where, Door door) noexcept {
+  return (static_cast<unsigned>(where) & static_cast<unsigned>(door)) != 0;
+}
+
+/// The unit of plain numbers. On the command line a height and a length may have their own unit
+/// behind them, as 10ft.
+enum class Unit : std::uint8_t {
+  kNone,
+  kMap,     ///< Of positions.
+  kHeight,  ///< The height's unit; where nobody knows it, what is taken for it (unit_of_ground()).
+  kGround,  ///< A distance: map units; in a geographic CRS metres.
+};
+
+/// Which numbers mean something.
+struct Range {
+  double least = std::numeric_limits<double>::lowest();
+  double most = std::numeric_limits<double>::max();
+  bool is_above = false;  ///< `least` is none itself.
+  bool has_nan = false;   ///< NaN is one, too.
+
+  [[nodiscard]] bool holds(double number) const noexcept {
+    if (number != number) return has_nan;
+    return (is_above ? number > least : number >= least) && number <= most;
+  }
+};
+inline constexpr Range kFinite{};
+inline constexpr Range kNotNegative{.least = 0};
+inline constexpr Range kPositive{.least = 0, .is_above = true};
+inline constexpr Range kAnyNumber{.least = -std::numeric_limits<double>::infinity(),
+                                  .most = std::numeric_limits<double>::infinity(),
+                                  .has_nan = true};
+/// As coarse as can be is infinite.
+inline constexpr Range kTolerance{.least = 0, .most = std::numeric_limits<double>::infinity()};
+
+/// Where a value goes: a flag, numbers, whole numbers, texts, a window; or what reads a text, and
+/// throws Error where it is none of its values.
+using Into = std::variant<bool*, double*, std::optional<double>*, std::vector<double>*, int*,
+                          std::vector<int>*, std::uint32_t*, std::uint64_t*,
+                          std::optional<std::uint64_t>*, std::string*, std::vector<std::string>*,
+                          std::optional<Window>*, std::function<void(const std::string&)>>;
+
+inline constexpr std::uint32_t kAnyNumberOfValues = std::numeric_limits<std::uint32_t>::max();
+
+struct Parameter {
+  std::string_view name;  ///< Over HTTP; on the command line it is --name.
+  /// Its spelling on the command line where that differs: "-i,--interval"; "FILE" of an argument.
+  std::string_view words{};
+  Into into{};
+  std::string_view metavar{};  ///< The value's name in help: "E", "X Y".
+  Unit unit = Unit::kNone;
+  Range range{};
+  std::vector<std::string_view> choices{};  ///< Values of a text; empty: any text.
+  std::uint32_t least_values = 1, most_values = 1;
+  std::string_view excludes{}, needs{};  ///< Names between blanks.
+  bool repeats = false;                  ///< It may be given several times, a value each time.
+  bool splits_at_commas = false;         ///< On the command line several values may be one word.
+  Door required = Door::kNone;           ///< Where it must be given.
+  bool shows_default = false;
+  Door doors = Door::kBoth;
+  bool is_json = false;        ///< Over HTTP: text of JSON, or a value of it in a body.
+  std::string_view example{};  ///< Over HTTP; empty: none.
+  std::string help{};          ///< Of people, without the unit.
+  std::string_view hint{};     ///< Behind a refusal: what may have been meant.
+
+  // Each sets what its name says, so that a row is one statement.
+  Parameter& spelled(std::string_view on_command_line) { return words = on_command_line, *this; }
+  Parameter& in(Unit of) { return unit = of, *this; }
+  Parameter& within(const Range& of) { return range = of, *this; }
+  Parameter& of(std::vector<std::string_view> all) { return choices = std::move(all), *this; }
+  Parameter& values(std::uint32_t least, std::uint32_t most) {
+    least_values = least;
+    most_values = most;
+    return *this;
+  }
+  Parameter& excluding(std::string_view names) { return excludes = names, *this; }
+  Parameter& needing(std::string_view names) { return needs = names, *this; }
+  Parameter& required_at(Door where) { return required = where, *this; }
+  Parameter& with_default() { return shows_default = true, *this; }
+  Parameter& at(Door where) { return doors = where, *this; }
+  Parameter& as_json() { return is_json = true, *this; }
+  Parameter& repeated() { return repeats = true, *this; }
+  Parameter& split_at_commas() { return splits_at_commas = true, *this; }
+  Parameter& like(std::string_view value) { return example = value, *this; }
+  Parameter& hinting(std::string_view at_what) { return hint = at_what, *this; }
+};
+/// The parameters of a question, in the order of its help. They point into what holds its values.
+class Parameters : public std::vector<Parameter> {
+ public:
+  using std::vector<Parameter>::vector;
+
+  Parameter& add(std::string_view name, Into into, std::string_view metavar, std::string help) {
+    return emplace_back(Parameter{
+        .name = name, .into = std::move(into), .metavar = metavar, .help = std::move(help)});
+  }
+};
+
+/// "--interval", "FILE"; "interval" over HTTP.
+[[nodiscard]] std::string name_at(const Parameter& parameter, Door door);
+/// The parameter's help with its unit, as the door has it.
+[[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
+/// The value that a parameter has before it is given; empty where it has none.
+[[nodiscard]] std::string default_of(const Parameter& parameter);
+/// True for a flag, which has no value on the command line.
+[[nodiscard]] inline bool is_flag(const Parameter& p) noexcept {
+  return std::holds_alternative<bool*>(p.into);
+}
+/// True for whole numbers.
+[[nodiscard]] bool is_whole(const Parameter& parameter) noexcept;
+/// True for text, and for what is read from it.
+[[nodiscard]] bool is_text(const Parameter& parameter) noexcept;
+/// True for parameters of several values.
+[[nodiscard]] bool is_list(const Parameter& parameter) noexcept;
+
+/// Puts the values that a door is given where the rows say. All throw Error invalid_argument, whose
+/// context is the parameter's name at the door.
+class Reading {
+ public:
+  explicit Reading(Door door) : door_(door) {}
+
+  /// Takes the values of one parameter; of a flag on the command line there are none.
+  void take(const Parameter& parameter, std::span<const std::string> values);
+  /// Whether a parameter was given.
+  [[nodiscard]] bool has(std::string_view name) const { return given_.contains(name); }
+  /// Looks at what is missing, and at what was given together.
+  void check(std::span<const Parameter> parameters) const;
+  /// Whether something waits for the terrain's units.
+  [[nodiscard]] bool waits() const noexcept { return !waiting_.empty(); }
+  /// Turns what was given with a unit into the terrain's; the second time nothing is left to do.
+  /// @throws Error invalid_argument  the terrain's unit is not known
+  void settle(const CrsFacts& crs);
+
+ private:
+  /// A number that has a unit behind it.
+  struct Waiting {
+    std::string parameter, text;
+    tools::Length length;
+    Unit unit;
+    double* number;
+  };
+  [[nodiscard]] double number_of(const Parameter& parameter, const std::string& text) const;
+  /// Puts a number, and notes it where it waits for its unit.
+  void put(const Parameter& parameter, const std::string& text, double& number);
+
+  Door door_;
+  std::map<std::string, bool, std::less<>> given_;
+  std::vector<Waiting> waiting_;
+};
+
+/// Without blanks before and behind.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+/// A finite or infinite number and nothing else but blanks around it; none else.
+[[nodiscard]] std::optional<double> number_in(std::string_view text);
+/// "a finite number > 0".
+[[nodiscard]] std::string words_of(const Range& range, bool whole = false);
+
+}  // namespace ptin::ask
