@@ -125,7 +125,8 @@ TEST(Parameter, IsReadAtBothDoors) {
   http::Request request;
   request.method = "POST";
   request.headers = {{"content-type", "application/json"}};
-  request.body = R"({"reach": 5, "rounds": 4, "kernel": "linear", "weights": [1, 2.5], "slow": true})";
+  request.body =
+      R"({"reach": 5, "rounds": 4, "kernel": "linear", "weights": [1, 2.5], "slow": true})";
   Smoothing smoothing;
   const ask::Parameters rows = parameters_of(smoothing);
   serve::Question(request, rows).read(rows);
@@ -141,9 +142,15 @@ TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
   const CommandLine line(context, smooth_alone());
   const std::vector<OptionFacts> options = line.options_of(0);
   const std::string manual = man_page(smooth_alone()), script = bash_script(smooth_alone());
-  const std::vector<serve::Endpoint> endpoints = {
-      {"/smooth", "smooth", true, "A smoothed terrain", serve::described<Smoothing>(), {},
-       http::Lane::kPoint, serve::Reserves::kNothing, nullptr}};
+  const std::vector<serve::Endpoint> endpoints = {{"/smooth",
+                                                   "smooth",
+                                                   true,
+                                                   "A smoothed terrain",
+                                                   serve::described<Smoothing>(),
+                                                   {},
+                                                   http::Lane::kPoint,
+                                                   serve::Reserves::kNothing,
+                                                   nullptr}};
   const nlohmann::json operation = serve::openapi(endpoints, {})["paths"]["/smooth"]["get"];
   for (const std::string name : {"error", "reach", "rounds", "kernel", "weights", "slow"}) {
     SCOPED_TRACE(name);
@@ -152,14 +159,13 @@ TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
     EXPECT_NE(manual.find("\\-\\-" + name), std::string::npos);
     EXPECT_NE(script.find(" --" + name), std::string::npos);
     const auto& all = operation["parameters"];
-    EXPECT_EQ(std::count_if(all.begin(), all.end(), [&](const auto& p) { return p["name"] == name; }),
-              1);
+    EXPECT_EQ(
+        std::count_if(all.begin(), all.end(), [&](const auto& p) { return p["name"] == name; }), 1);
   }
   const auto schema = [&](std::size_t i) { return operation["parameters"][i]["schema"]; };
-  EXPECT_EQ(schema(1), nlohmann::json::parse(
-                           R"({"type":"number","minimum":0.0,"exclusiveMinimum":true})"));
-  EXPECT_EQ(schema(2),
-            nlohmann::json::parse(R"({"type":"integer","minimum":1.0,"maximum":9.0})"));
+  EXPECT_EQ(schema(1),
+            nlohmann::json::parse(R"({"type":"number","minimum":0.0,"exclusiveMinimum":true})"));
+  EXPECT_EQ(schema(2), nlohmann::json::parse(R"({"type":"integer","minimum":1.0,"maximum":9.0})"));
   EXPECT_EQ(schema(3), nlohmann::json::parse(R"({"type":"string","enum":["cubic","linear"]})"));
   EXPECT_EQ(schema(4), nlohmann::json::parse(R"({"type":"array","minItems":2,"maxItems":4,
                                                  "items":{"type":"number","minimum":0.0}})"));
@@ -198,6 +204,35 @@ TEST(Parameter, IsRefusedInTheSameWords) {
   EXPECT_EQ(refusal_of({{"weights", "1,2"}}).parameter, "weights");
   EXPECT_EQ(refusal_of({{"weights", "1"}, {"kernel", "cubic"}}).parameter, "weights");
   EXPECT_EQ(refusal_of({{"error", "inf"}}).parameter, "error");
+}
+
+/// What HTTP always answered stays answered where the command line is stricter.
+TEST(Parameter, MayTakeMoreOverHttp) {
+  const auto refusal = [](ask::Door door, const std::string& bend, bool is_flat) -> std::string {
+    double value = 0.0;
+    bool flat = false;
+    const ask::Parameters rows = {{.name = "flat", .into = &flat},
+                                  {.name = "bend",
+                                   .into = &value,
+                                   .range = {.least = 0, .most = 1},
+                                   .range_over_http = ask::kNotNegative,
+                                   .excludes = "flat",
+                                   .bound_at = ask::Door::kProgram}};
+    ask::Reading reading(door);
+    try {
+      if (is_flat) reading.take(rows[0], std::vector<std::string>{"true"});
+      reading.take(rows[1], std::vector<std::string>{bend});
+      reading.check(rows);
+    } catch (const Error& e) {
+      return e.message();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(ask::Door::kProgram, "1.5", false),
+            "must be a number from 0 to 1; 1.5 is none");
+  EXPECT_EQ(refusal(ask::Door::kProgram, "1", true), "excludes --flat; give one of them");
+  EXPECT_EQ(refusal(ask::Door::kService, "1.5", true), "");
+  EXPECT_EQ(refusal(ask::Door::kService, "-1", false), "must be a finite number >= 0; -1 is none");
 }
 
 /// An answer that there is not.

@@ -88,6 +88,7 @@ void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
       .spelled("--base,--off")
       .in(Unit::kHeight)
       .needing("interval")
+      .bound(Door::kProgram)
       .at(doors)
       .like("0");
 }
@@ -110,6 +111,8 @@ void add_curvature(Parameters& rows, double& coefficient) {
            "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat "
            "Earth, 1 one without refraction, 0.75 the 4/3 Earth of radio")
       .within({.least = 0, .most = 1})
+      // Air that bends light upwards has more than 1.
+      .within_over_http(kNotNegative)
       .with_default()
       .like("0.857")
       .hinting("An Earth of so many times its radius is --refraction ");

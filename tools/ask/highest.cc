@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ask/highest.h"
 
+#include <cstdint>
+#include <limits>
+
 namespace ptin::ask {
 
 void add_highest(Parameters& rows, HighestQuestion& question) {
@@ -10,6 +13,8 @@ void add_highest(Parameters& rows, HighestQuestion& question) {
   rows.add("listed", &request.listed, "K", "How many of the highest vertices to list")
       .spelled("-k")
       .within({.least = 1, .most = 1e6})
+      // The service has a limit of its own.
+      .within_over_http({.least = 1, .most = std::numeric_limits<std::uint32_t>::max()})
       .with_default()
       .like("10");
   add_detail(rows, request.detail, "; the height comes with an interval",

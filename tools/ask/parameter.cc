@@ -69,8 +69,8 @@ std::uint64_t whole_of(const Parameter& p, Door door, const std::string& text) {
   std::uint64_t number = 0;
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   const bool is_one = fault == std::errc() && end == digits.data() + digits.size();
-  if (is_one && p.range.holds(static_cast<double>(number))) return number;
-  refuse_value(p, door, words_of(p.range, true), text);
+  if (is_one && range_at(p, door).holds(static_cast<double>(number))) return number;
+  refuse_value(p, door, words_of(range_at(p, door), true), text);
 }
 
 bool truth_of(const Parameter& p, Door door, const std::string& text) {
@@ -202,9 +202,9 @@ double Reading::number_of(const Parameter& p, const std::string& text) const {
   }
   // Over HTTP no number is infinite: JSON has none.
   const bool is_too_far = door_ == Door::kService && number && !std::isfinite(*number);
-  if (number && p.range.holds(*number) && !is_too_far) return *number;
+  if (number && range_at(p, door_).holds(*number) && !is_too_far) return *number;
   const std::string unit = words_of(p.unit, door_);
-  std::string words = words_of(p.range) + (unit.empty() ? "" : ", " + unit);
+  std::string words = words_of(range_at(p, door_)) + (unit.empty() ? "" : ", " + unit);
   if (!number && has_own_unit(p, door_)) {
     words += ", or with a unit behind it (" + tools::known_length_units() + "), as 10ft";
   }
@@ -289,6 +289,7 @@ void Reading::check(std::span<const Parameter> parameters) const {
                  (p.example.empty() ? "" : ", as " + std::string(p.example)),
              name);
     }
+    if (!is_at(p.bound_at, door_)) continue;
     for (const std::string_view other : names_in(p.excludes)) {
       const Parameter* const given = has(other) ? find(parameters, other) : nullptr;
       if (given != nullptr)

@@ -75,12 +75,15 @@ struct Parameter {
   std::string_view metavar{};  ///< The value's name in help: "E", "X Y".
   Unit unit = Unit::kNone;
   Range range{};
+  std::optional<Range> range_over_http{};   ///< Where HTTP takes more; empty: `range`.
   std::vector<std::string_view> choices{};  ///< Values of a text; empty: any text.
   std::uint32_t least_values = 1, most_values = 1;
   std::string_view excludes{}, needs{};  ///< Names between blanks.
-  bool repeats = false;                  ///< It may be given several times, a value each time.
-  bool splits_at_commas = false;         ///< On the command line several values may be one word.
-  Door required = Door::kNone;           ///< Where it must be given.
+  /// Where these hold. Elsewhere what is beside it is not looked at.
+  Door bound_at = Door::kBoth;
+  bool repeats = false;           ///< It may be given several times, a value each time.
+  bool splits_at_commas = false;  ///< On the command line several values may be one word.
+  Door required = Door::kNone;    ///< Where it must be given.
   bool shows_default = false;
   Door doors = Door::kBoth;
   bool is_json = false;        ///< Over HTTP: text of JSON, or a value of it in a body.
@@ -92,6 +95,7 @@ struct Parameter {
   Parameter& spelled(std::string_view on_command_line) { return words = on_command_line, *this; }
   Parameter& in(Unit of) { return unit = of, *this; }
   Parameter& within(const Range& of) { return range = of, *this; }
+  Parameter& within_over_http(const Range& of) { return range_over_http = of, *this; }
   Parameter& of(std::vector<std::string_view> all) { return choices = std::move(all), *this; }
   Parameter& values(std::uint32_t least, std::uint32_t most) {
     least_values = least;
@@ -100,6 +104,7 @@ struct Parameter {
   }
   Parameter& excluding(std::string_view names) { return excludes = names, *this; }
   Parameter& needing(std::string_view names) { return needs = names, *this; }
+  Parameter& bound(Door where) { return bound_at = where, *this; }
   Parameter& required_at(Door where) { return required = where, *this; }
   Parameter& with_default() { return shows_default = true, *this; }
   Parameter& at(Door where) { return doors = where, *this; }
@@ -124,6 +129,11 @@ class Parameters : public std::vector<Parameter> {
 [[nodiscard]] std::string name_at(const Parameter& parameter, Door door);
 /// The parameter's help with its unit, as the door has it.
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
+/// The numbers that a door takes.
+[[nodiscard]] inline const Range& range_at(const Parameter& parameter, Door door) noexcept {
+  const bool is_other = door == Door::kService && parameter.range_over_http;
+  return is_other ? *parameter.range_over_http : parameter.range;
+}
 /// The value that a parameter has before it is given; empty where it has none.
 [[nodiscard]] std::string default_of(const Parameter& parameter);
 /// True for a flag, which has no value on the command line.

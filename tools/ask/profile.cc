@@ -17,6 +17,7 @@ void add_profile(Parameters& rows, ProfileRequest& request) {
   rows.add("stations", &request.station_step, "D", "Beside the breaks, heights at equal distances")
       .in(Unit::kGround)
       .within(kPositive)
+      .within_over_http(kNotNegative)  // 0: none
       .like("100");
   add_detail(rows, request.detail, "",
              "The TIN of the terrain's N most important vertices, instead of an error");

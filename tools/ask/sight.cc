@@ -26,13 +26,13 @@ constexpr std::size_t kFewPairs = 16;          // Fewer pairs are not worth a co
 /// @throws Error invalid_argument  no number, another unit; below 1 MHz, where a number without its
 ///                                 unit is what was meant
 double hertz_of(const std::string& text) {
-  constexpr std::array<std::pair<const char*, double>, 5> kUnits = {
+  constexpr std::array<std::pair<const char*, double>, 5> kHertzUnits = {
       {{"", 1.0}, {"hz", 1.0}, {"khz", 1e3}, {"mhz", 1e6}, {"ghz", 1e9}}};
   const std::optional<tools::Quantity> quantity = tools::quantity_of(text);
   const std::string unit = quantity ? tools::lower_case(quantity->unit) : std::string();
-  const auto* const known =
-      std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& u) { return unit == u.first; });
-  if (!quantity || known == kUnits.end()) {
+  const auto* const known = std::find_if(kHertzUnits.begin(), kHertzUnits.end(),
+                                         [&](const auto& u) { return unit == u.first; });
+  if (!quantity || known == kHertzUnits.end()) {
     refuse("\"" + tools::shown(text) +
            "\" is no frequency; expected one as 5.8GHz, 5800MHz or 5.8e9 (hertz)");
   }
@@ -96,6 +96,7 @@ void add_sight(Parameters& rows, SightQuestion& question) {
           "Measure the first Fresnel zone at this frequency, as 5.8GHz, 5800MHz or "
           "5.8e9 (hertz); 1 MHz at least")
       .excluding("verdict")
+      .bound(Door::kProgram)
       .like("5.8e9");
   add_detail(rows, request.detail, ": finer records are left out; may answer undecided",
              "Leave out what is not among the terrain's N most important vertices, instead of an "
@@ -184,8 +185,7 @@ const Fields<SightRow>& sight_fields() {
        [](const SightRow& r) -> Json { return r.result.void_length; }},
       {{"fresnel", "object", "",
         "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
-        "left "
-        "out.",
+        "left out.",
         kBoth, As::kObject},
        [](const SightRow&) -> Json { return kLeftOut; }},
       {{"fresnel.ratio", "number or null", "", "That clearance over that radius."},

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/error.h"
+#include "tools/facts/human.h"
 #include "tools/ptin/cli.h"
 #include "tools/ptin/help_text.h"
 #include "tools/ptin/usage_fault.h"
@@ -36,30 +37,50 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-/// What help says of a parameter behind its name: "E Excludes: --vertices".
-std::string help_of_value(const ask::Parameter& row, const CLI::App& app) {
+/// Whether a list of names between blanks has one.
+bool has_name(std::string_view list, std::string_view name) {
+  return (" " + std::string(list) + " ").find(" " + std::string(name) + " ") != std::string::npos;
+}
+
+/// The value's name and which values there are: "TEXT:{stars,splits}", "N in [1 - 1024]".
+std::string values_of(const ask::Parameter& row) {
   std::string text(row.metavar);
+  const char* before = ":{";
+  for (const std::string_view choice : row.choices) {
+    text.append(before).append(choice);
+    before = ",";
+  }
+  if (!row.choices.empty()) text += "}";
+  const auto [least, most] = std::pair(row.range.least, row.range.most);
+  if (least > ask::kFinite.least && most < ask::kFinite.most) {
+    text += " in [" + short_number(least) + " - " + short_number(most) + "]";
+  }
+  return text;
+}
+
+/// What help says of a parameter behind its name: "E Excludes: --vertices".
+std::string help_of_value(const ask::Parameter& row, const ask::Parameters& rows) {
+  std::string text = values_of(row);
   const std::string by_default = row.shows_default ? ask::default_of(row) : std::string();
   if (!by_default.empty()) text += "=" + by_default;
   if (row.most_values == ask::kAnyNumberOfValues && !row.metavar.ends_with("...")) text += " ...";
   if (is_at(row.required, ask::Door::kProgram)) text += " REQUIRED";
-  for (const auto& [title, names] :
-       {std::pair{" Needs:", row.needs}, {" Excludes:", row.excludes}}) {
-    if (names.empty()) continue;
-    text += title;
-    for (std::string_view rest = names; !rest.empty();) {
-      const std::size_t end = std::min(rest.find(' '), rest.size());
-      const CLI::Option* const other =
-          app.get_option_no_throw("--" + std::string(rest.substr(0, end)));
-      if (other != nullptr) text += " " + other->get_name();
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
+  std::string needed, excluded;
+  for (const ask::Parameter& other : rows) {
+    if (!is_at(other.doors, ask::Door::kProgram)) continue;
+    const std::string name = " " + ask::name_at(other, ask::Door::kProgram);
+    if (has_name(row.needs, other.name)) needed += name;
+    // One of both says that they exclude each other; help tells it at both.
+    if (has_name(row.excludes, other.name) || has_name(other.excludes, row.name)) excluded += name;
   }
+  if (!needed.empty()) text += " Needs:" + needed;
+  if (!excluded.empty()) text += " Excludes:" + excluded;
   return text.starts_with(' ') ? text.substr(1) : text;
 }
 
-/// Declares a parameter. `row` outlives `app`.
-void declare(CLI::App& app, const ask::Parameter& row, ask::Reading& reading) {
+/// Declares one of `rows`, which outlive `app`.
+void declare(CLI::App& app, const ask::Parameter& row, const ask::Parameters& rows,
+             ask::Reading& reading) {
   const std::string words =
       row.words.empty() ? "--" + std::string(row.name) : std::string(row.words);
   const std::string help = ask::help_at(row, ask::Door::kProgram);
@@ -77,11 +98,11 @@ void declare(CLI::App& app, const ask::Parameter& row, ask::Reading& reading) {
     option->expected(static_cast<int>(row.least_values),
                      has_any_number ? -1 : static_cast<int>(row.most_values));
     option->allow_extra_args(!row.repeats && row.most_values > 1);
-    option->type_name(std::string(row.metavar));
+    option->type_name(values_of(row));
     if (row.splits_at_commas) option->delimiter(',');
   }
   if (is_at(row.required, ask::Door::kProgram)) option->required();
-  if (const std::string text = help_of_value(row, app); !text.empty()) option->option_text(text);
+  if (const std::string text = help_of_value(row, rows); !text.empty()) option->option_text(text);
 }
 
 /// Declares what holds for every subcommand; last, so that --help ends with it.
@@ -137,8 +158,9 @@ CommandLine::CommandLine(Context& context, std::span<const Command> all)
       inside_->declared.push_back({{}, declare_build(*sub, context)});
     } else {
       inside_->declared.push_back(command.declare(context));
-      for (const ask::Parameter& row : inside_->declared.back().parameters) {
-        if (is_at(row.doors, ask::Door::kProgram)) declare(*sub, row, *context.reading);
+      const ask::Parameters& rows = inside_->declared.back().parameters;
+      for (const ask::Parameter& row : rows) {
+        if (is_at(row.doors, ask::Door::kProgram)) declare(*sub, row, rows, *context.reading);
       }
     }
     declare_common(*sub, context);

@@ -162,8 +162,8 @@ void print_answer(ask::Json answer, const ask::AnswerFacts& facts) {
   print_json(answer);
 }
 
-void print_json(const ask::Json& json) {
-  write_to_stdout(json.dump(2, ' ', false, ask::Json::error_handler_t::replace) + "\n");
+void print_json(const nlohmann::json& json) {
+  write_to_stdout(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace ptin::tools

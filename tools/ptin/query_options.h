@@ -86,8 +86,8 @@ void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
 
 /// Prints an answer with the fields that every answer has.  @throws Error as write_to_stdout
 void print_answer(ask::Json answer, const ask::AnswerFacts& facts);
-/// Prints JSON, indented, and a newline to stdout. Infinite numbers become null.
+/// Prints JSON, indented and by the order of names, and a newline to stdout. Infinite numbers become null.
 /// @throws Error as write_to_stdout
-void print_json(const ask::Json& json);
+void print_json(const nlohmann::json& json);
 
 }  // namespace ptin::tools

@@ -140,8 +140,8 @@ http::Response answer_sight(const Asked& asked) {
     cost.seconds += result.cost.seconds;
     is_exact = is_exact && result.exact;
     deviation = std::max(deviation, result.certified_deviation);
-    results.push_back(ask::object_of(ask::sight_fields(), ask::SightRow(result, to_client),
-                                     ask::Door::kService));
+    results.push_back(
+        ask::object_of(ask::sight_fields(), ask::SightRow(result, to_client), ask::Door::kService));
   }
   const double error = certified_error_of(asked, question.request.detail);
   Json json = certainty_json(asked, error, deviation, is_exact);
