@@ -211,7 +211,7 @@ TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   };
   refused({}, 2, "--level");
   refused({"--interval", "-5"}, 2, "interval");
-  refused({"--interval", "5", "--max-lines", "-1"}, 2, "count");
+  refused({"--interval", "5", "--max-lines", "-1"}, 2, "must be a whole number >= 0; -1 is none");
   refused({"--interval", "0.0000001"}, 2, "levels");
   refused({"--level", "1000", "--error", "-1"}, 2, "--error");
   refused({"--interval", "10", "--max-lines", "3"}, 7, "isolines, more than the limit of 3");

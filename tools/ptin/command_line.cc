@@ -45,7 +45,7 @@ bool has_name(std::string_view list, std::string_view name) {
 /// The value's name and which values there are: "TEXT:{stars,splits}", "N in [1 - 1024]".
 std::string values_of(const ask::Parameter& row) {
   std::string text(row.metavar);
-  const char* before = ":{";
+  const char* before = text.empty() ? "{" : ":{";
   for (const std::string_view choice : row.choices) {
     text.append(before).append(choice);
     before = ",";
