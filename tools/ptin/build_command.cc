@@ -24,7 +24,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "This stored value (before scale and offset) means void; overrides the source's")
       ->type_name("V");
   app.add_option("--resolution", options.resolution, "Points, TINs: the grid unit, in CRS units")
-      ->check(plain_measure(NumberRange::kPositive, "in CRS units"))
+      ->check(plain_measure(ask::kPositive, "in CRS units"))
       ->type_name("R");
   app.add_option("--class", options.classes,
                  "LAS: keep points of these classes, such as 2 for ground; 2,9 for several")
@@ -63,8 +63,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
                  "Points, --repair: triangles with an edge longer than this become void; CRS "
                  "units, or metres\n"
                  "where those are degrees")
-      ->check(
-          plain_measure(NumberRange::kPositive, "in CRS units, or metres where those are degrees"))
+      ->check(plain_measure(ask::kPositive, "in CRS units, or metres where those are degrees"))
       ->type_name("L");
   app.add_option("--breaklines", options.breaklines,
                  "Points, --repair: lines that become edges of the TIN, from layers that OGR reads "
@@ -85,7 +84,7 @@ void add_source_options(CLI::App& app, BuildCommand& command) {
       ->type_name("NAME");
   app.add_option("--bbox", command.bbox, "Leave out samples outside of this box, in CRS units")
       ->expected(4)
-      ->check(numbers(NumberRange::kFinite, "in CRS units"))
+      ->check(numbers(ask::kFinite, "in CRS units"))
       ->type_name("XMIN YMIN XMAX YMAX");
   app.add_option("--a-srs,--a_srs", options.a_srs,
                  "The CRS; overrides the source's (EPSG code, WKT, PROJ string)")
@@ -121,7 +120,7 @@ void add_work_options(CLI::App& app, BuildCommand& command) {
   app.add_flag("--dry-run", command.dry_run, "Say what the build would need, and stop");
   app.add_option("--progress-fd", command.progress_fd,
                  "Write progress as lines of JSON to this file descriptor")
-      ->check(numbers(NumberRange::kNotNegative, ""))
+      ->check(numbers(ask::kNotNegative, ""))
       ->type_name("FD");
   auto* parts = app.add_option("--parts", command.parts,
                                "Read the source and divide the rest into this many jobs of a batch "
@@ -175,13 +174,13 @@ void declare_build_options(CLI::App& app, BuildCommand& command) {
       ->check(CLI::IsMember({"error", "roi", "elevation"}));
   app.add_option("--max-error", options.max_error,
                  "Leave out detail below this error, in the height's unit")
-      ->check(plain_measure(NumberRange::kNotNegative, "in the height's unit"))
+      ->check(plain_measure(ask::kNotNegative, "in the height's unit"))
       ->type_name("E");
   app.add_option(
          "--void-slope", options.void_slope,
          "Error charged for each ground unit that the border of a void moves: at an error E it\n"
          "moves by E / S at most")
-      ->check(numbers(NumberRange::kNotNegative, ""))
+      ->check(numbers(ask::kNotNegative, ""))
       ->type_name("S")
       ->capture_default_str();
   add_work_options(app, command);

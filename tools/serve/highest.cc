@@ -65,8 +65,7 @@ http::Response answer_highest(const Asked& asked) {
   const Json json = {{"type", "FeatureCollection"},
                      {"state", tools::name_of(result.state)},
                      {"features", std::move(features)},
-                     {"ptin:certainty", certainty_json(asked, result.certified_error,
-                                                       result.certified_deviation, result.exact)}};
+                     {"ptin:certainty", certainty_of(asked, result)}};
   return answered(asked, text_of(json), format.media, result.cost, result.certified_error,
                   result.exact);
 }

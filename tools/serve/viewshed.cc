@@ -102,7 +102,7 @@ std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& p
   text.add(",\"visible\":").json(seen.visible_vertices);
   text.add(",\"hidden\":").json(seen.hidden_vertices);
   text.add(",\"undecided\":").json(seen.undecided_vertices).add(",\"ptin:certainty\":");
-  text.json(certainty_json(asked, seen.certified_error, seen.certified_deviation, seen.exact));
+  text.json(certainty_of(asked, seen));
   return text.add("}\n").take();
 }
 
