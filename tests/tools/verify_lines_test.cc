@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -71,7 +72,7 @@ TEST_F(VerifyLines, FindsEveryLineWithinTheErrors) {
   write_file(lines(), csv({"LINESTRING Z (20.25 30.5 90,380.75 310.5 70.25)",
                            "LINESTRING Z (20.25 250 84,150.125 20 85.93)",  // crosses at its height
                            "LINESTRING Z (200 60 40,200 110 40,260 110 40,200 60 40)"}));
-  for (const bool with_area : {false, true}) {
+  for (const bool with_area : test::some_of({false, true})) {
     SCOPED_TRACE(with_area);
     std::vector<std::string> options = {"--breaklines", lines()};
     if (with_area) {

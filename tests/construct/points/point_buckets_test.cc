@@ -60,7 +60,8 @@ TEST(PointBuckets, HoldThePointsOfTheSource) {
       expect_same(file.path(), options, memory, small_sorting());
     }
     options.resolution = 7.0;
-    for (const PointMerge rule : {PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst}) {
+    for (const PointMerge rule :
+         test::some_of({PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst})) {
       options.merge = rule;
       expect_same(file.path(), options, 1 << 18);
       expect_same(file.path(), options, 1 << 16, small_sorting());

@@ -24,6 +24,7 @@
 #include "tests/construct/memory_file.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/read_buckets.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -179,7 +180,7 @@ TEST(PointStages, WriteTheSameBytesByWhomeverTheyAreDone) {
       second("second.xyz", text_of(points_of(PointKind::kDuplicates, 10'000, 4)));
   const std::vector<std::string> paths{first.path(), second.path()};
   SourceOptions options;
-  for (const PointMerge rule : {PointMerge::kMean, PointMerge::kFirst}) {
+  for (const PointMerge rule : test::some_of({PointMerge::kMean, PointMerge::kFirst})) {
     options.merge = rule;
     const Written alone = sorted_by(run_alone, paths, options);
     for (const int threads : {1, 2, 3}) {

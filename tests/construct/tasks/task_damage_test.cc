@@ -134,7 +134,7 @@ std::string case_name(const testing::TestParamInfo<Case>& of) {
          (is_above ? "Above" : "");
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachKind, DamagedTaskFile, testing::ValuesIn(test::some_of(cases())),
+INSTANTIATE_TEST_SUITE_P(OfEachKind, DamagedTaskFile, testing::ValuesIn(test::some_of(cases(), 4)),
                          case_name);
 
 /// Every input of every task, but each once: the build mends itself however much is broken.

@@ -81,7 +81,7 @@ TEST(LivingTriangles, OfBuiltTerrainsAreThoseOfTheirRefinements) {
   for (const char* name : test::some_of({"mountains_257.tif", "coast_257.tif"})) {
     for (const double max_error : {0.0, 2.0}) {
       const Terrain& terrain = reference::built_terrain(name, max_error);
-      for (const double level : {-1.0, 0.0, 1.0, 5.0, 7.3, 40.0, 1e6}) {
+      for (const double level : test::some_of({-1.0, 0.0, 1.0, 5.0, 7.3, 40.0, 1e6})) {
         ASSERT_EQ(living(terrain.store(), level), refined_corners(terrain, level))
             << name << " left out " << max_error << " at " << level;
       }

@@ -16,6 +16,7 @@
 #include "engine/error.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/sight/sight_oracle.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -307,7 +308,7 @@ TEST_P(SightByBothWays, IsTheSame) {
     SightSolver stars(t, request, 300);
     request.by = AnswerBy::kSplits;
     SightSolver splits(t, request);
-    for (int i = 0; i < 400; ++i) {
+    for (const std::uint64_t i : test::some_of_first(400)) {
       const double height = static_cast<double>(random() % 5 * (random() % 3) * 20);
       const SightPair pair{place(), height, place(), height};
       const SightResult a = stars.solve(pair);
@@ -351,7 +352,7 @@ TEST_P(SightByBothWays, AtALevelStarsTellMore) {
   const Terrain& t = reference::built_terrain(GetParam());
   const StoreFacts& f = t.store().facts();
   SightSolver full(t, {}, 0);
-  for (const std::uint64_t vertices : {600, 3000, 9001}) {
+  for (const std::uint64_t vertices : test::some_of<std::uint64_t>({600, 3000, 9001})) {
     SightRequest request;
     request.detail.vertices = vertices;
     SightSolver by_stars(t, request, 0);
