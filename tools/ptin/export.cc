@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include <cpl_conv.h>
+#include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
 
 #include "engine/crs/crs_facts.h"

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
