@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/check.h"
+#include "engine/construct/scratch/plain_value.h"
 #include "storage/file/file_questions.h"
 #include "storage/packed_segment.h"
 
@@ -191,9 +192,8 @@ struct SegmentFacts {
 };
 
 /// Takes plain values from the front of bytes.
-template <class T>
+template <PlainValue T>
 std::vector<T> take(std::span<const std::byte>& bytes, std::uint64_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
   PTIN_CHECK(count <= bytes.size() / sizeof(T));
   std::vector<T> values(static_cast<std::size_t>(count));
   const auto part = bytes.first(values.size() * sizeof(T));

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/scratch/plain_value.h"
+
 namespace ptin {
 
 /// Tasks that do not depend on one another. All are done before the next stage begins.
@@ -70,7 +72,7 @@ using RunStage = std::function<std::vector<std::string>(const SourceStage&, Stag
 void take_digits(const std::string& text, std::span<std::byte> bytes);
 
 /// A plain value as a text that another process of the same program takes up.
-template <class T>
+template <PlainValue T>
 [[nodiscard]] std::string text_of_value(const T& value) {
   return digits_of(std::as_bytes(std::span(&value, 1)));
 }

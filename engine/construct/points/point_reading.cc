@@ -2,7 +2,6 @@
 #include "engine/construct/points/point_reading.h"
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
@@ -64,7 +63,6 @@ struct PlainRead {
   std::int32_t plan_decimals, height_decimals;
   std::uint32_t has_lattice, has_rows;
 };
-static_assert(std::is_trivially_copyable_v<PlainRead>);
 
 /// Tells how much of a portion is done, in its bytes.
 class PortionProgress {

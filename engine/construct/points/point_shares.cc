@@ -14,7 +14,7 @@ namespace ptin {
 namespace {
 
 /// Writes records to the ranges of one file.
-template <class Record>
+template <PlainValue Record>
 class ShareWriter {
  public:
   ShareWriter(const SortPlan& plan, const PointFiles& files, std::size_t share)

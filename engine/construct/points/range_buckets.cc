@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/point_merge.h"
@@ -24,7 +23,6 @@ struct PlainIndex {
   double largest_shift_height;
   HeightFinder::Known heights;
 };
-static_assert(std::is_trivially_copyable_v<PlainIndex>);
 
 /// Merges points that come in the order of the curve, and writes them in buckets.
 class BucketWriter {

@@ -14,23 +14,6 @@ namespace ptin {
 
 namespace {
 
-/// Joins raises of several leaves: leaves one entry for each record, the maxima.
-void combine(std::vector<BoundsRaise>& raises) {
-  std::sort(raises.begin(), raises.end(),
-            [](const BoundsRaise& a, const BoundsRaise& b) { return a.record < b.record; });
-  std::size_t kept = 0;
-  for (const BoundsRaise& r : raises) {
-    if (kept > 0 && raises[kept - 1].record == r.record) {
-      RecordBounds& bounds = raises[kept - 1].bounds;
-      bounds.error = std::max(bounds.error, r.bounds.error);
-      bounds.deviation = std::max(bounds.deviation, r.bounds.deviation);
-    } else {
-      raises[kept++] = r;
-    }
-  }
-  raises.resize(kept);
-}
-
 void append(std::vector<BoundsRaise>& to, std::span<const BoundsRaise> raises) {
   to.insert(to.end(), raises.begin(), raises.end());
 }
