@@ -15,7 +15,7 @@
 #include "engine/construct/process_limits.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 

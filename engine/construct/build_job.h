@@ -21,8 +21,8 @@
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tasks/build_hierarchy.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/construct/tiled_source.h"
 
 namespace ptin::build_internal {

@@ -19,12 +19,12 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/tasks/await_file.h"
-#include "engine/construct/tasks/batch_order.h"
 #include "engine/construct/tasks/piece_runner.h"
 #include "engine/construct/tasks/task_driver.h"
-#include "engine/construct/tasks/task_graph.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/task_graph.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 #include "storage/file/checksum.h"
 
 namespace ptin {

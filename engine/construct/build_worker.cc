@@ -8,9 +8,9 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tasks/batch_order.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 #include "engine/construct/tiled_source.h"
 
 namespace ptin {

@@ -12,7 +12,7 @@
 #include "engine/construct/build.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/stored_detail.h"
-#include "engine/construct/tasks/segment_output.h"
+#include "engine/construct/tile_tasks/segment_output.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 

@@ -14,8 +14,8 @@
 #include "engine/construct/tasks/piece_runner.h"
 #include "engine/construct/tasks/stage_runner.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_schedule.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 namespace ptin {
 

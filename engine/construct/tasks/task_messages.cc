@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tasks/task_messages.h"
 
-#include "engine/construct/tasks/task_schedule.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 namespace ptin {
 

@@ -16,9 +16,9 @@
 
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/hierarchy/tile_files.h"
-#include "engine/construct/tasks/segment_output.h"
 #include "engine/construct/tasks/task.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tile_tasks/segment_output.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin {

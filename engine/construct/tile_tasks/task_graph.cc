@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/task_graph.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tile_tasks/batch_order.h"
 #include "engine/memory_units.h"
 
 namespace ptin {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/task_schedule.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
 
 #include <algorithm>
 #include <utility>

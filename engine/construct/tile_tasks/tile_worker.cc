@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "engine/construct/hierarchy/tighten.h"
 #include "engine/construct/tasks/await_file.h"
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tile_tasks/batch_order.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 

@@ -11,10 +11,10 @@
 #include <set>
 #include <vector>
 
-#include "engine/construct/tasks/batch_order.h"
-#include "engine/construct/tasks/build_log.h"
 #include "engine/construct/tasks/task.h"
-#include "engine/construct/tasks/task_graph.h"
+#include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/build_log.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 
 namespace ptin {
 

@@ -12,11 +12,11 @@
 
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tasks/segment_output.h"
 #include "engine/construct/tasks/stage_progress.h"
 #include "engine/construct/tasks/task_driver.h"
-#include "engine/construct/tasks/task_schedule.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tile_tasks/segment_output.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {

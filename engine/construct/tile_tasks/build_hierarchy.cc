@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 
 #include <algorithm>
 #include <mutex>
@@ -8,8 +8,8 @@
 
 #include "engine/check.h"
 #include "engine/construct/hierarchy/tile_files.h"
-#include "engine/construct/tasks/build_log.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/build_log.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 namespace ptin {
 

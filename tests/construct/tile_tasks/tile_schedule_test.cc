@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The order of batches, messages of tasks, what was done elsewhere, and files that show late.
-#include "engine/construct/tasks/task_schedule.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -20,7 +20,7 @@
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 #include "tests/construct/resume_fixture.h"
 
 namespace ptin {
