@@ -78,9 +78,6 @@ class StoreOutput final : public SegmentOutput {
   std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
 };
 
-/// The options that decide the bytes of a file, as its metadata has them.
-[[nodiscard]] nlohmann::json options_json(const BuildOptions& options);
-
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);
 
