@@ -2,6 +2,7 @@
 #include "engine/construct/tile_tasks/tile_schedule.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "engine/check.h"
@@ -15,23 +16,25 @@ constexpr int kMostDamages = 3;
 
 }  // namespace
 
-TaskSchedule::TaskSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,
-                           BuildLog& log)
+TileSchedule::TileSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,
+                           BuildLog& log, Tell tell)
     : tree_(tree),
       order_(order),
       graph_(tree, memory),
       log_(log),
       next_place_(static_cast<std::size_t>(log.written())),
-      end_of_places_(log.output().page_bytes()) {
+      end_of_places_(log.output().page_bytes()),
+      tell_(std::move(tell)) {
   for (const auto& [name, result] : log.results()) {
     follow(name);
+    std::ignore = count(name, ~std::uint64_t{0});
   }
 }
 
 // -------------------------------------------------------------------------------------------------
 // Handing out.
 
-bool TaskSchedule::are_inputs_there(const TaskName& name) const {
+bool TileSchedule::are_inputs_there(const TaskName& name) const {
   const auto inputs = graph_.inputs_of(name);
   return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
     const TaskName producer = producer_of(input.first, input.second);
@@ -40,7 +43,7 @@ bool TaskSchedule::are_inputs_there(const TaskName& name) const {
 }
 
 /// The first batch from `from` on that this was not done with.
-std::optional<TaskName> TaskSchedule::next_batch(TaskKind kind, std::size_t from) const {
+std::optional<TaskName> TileSchedule::next_batch(TaskKind kind, std::size_t from) const {
   for (std::size_t i = from; i < order_.batches().size(); ++i) {
     const TaskName name{kind, order_.batches()[i]};
     if (!log_.is_done(name) && !again_.contains(name)) {
@@ -51,14 +54,14 @@ std::optional<TaskName> TaskSchedule::next_batch(TaskKind kind, std::size_t from
 }
 
 /// The first that can be handed out now.
-std::optional<TaskName> TaskSchedule::first_of(const std::set<TaskName>& names) const {
+std::optional<TaskName> TileSchedule::first_of(const std::set<TaskName>& names) const {
   const auto found = std::find_if(names.begin(), names.end(), [&](const TaskName& name) {
     return !running_.contains(name) && are_inputs_there(name);
   });
   return found == names.end() ? std::nullopt : std::optional(*found);
 }
 
-std::optional<TaskName> TaskSchedule::next() const {
+std::optional<TaskName> TileSchedule::next() const {
   if (const auto again = first_of(again_)) {
     return again;
   }
@@ -74,18 +77,18 @@ std::optional<TaskName> TaskSchedule::next() const {
   return tree_.root().level > 1 ? next_batch(TaskKind::kTighten, next_tighten_) : std::nullopt;
 }
 
-std::optional<std::uint64_t> TaskSchedule::next_bytes() const {
+std::optional<std::uint64_t> TileSchedule::next_bytes() const {
   const std::optional<TaskName> name = next();
   return name ? std::optional(graph_.bytes_of(*name, log_.results())) : std::nullopt;
 }
 
-Task TaskSchedule::described(const TaskName& name) const {
+Task TileSchedule::described(const TaskName& name) const {
   Task task = graph_.describe(name, log_.results());
   task.offset = name.kind == TaskKind::kPlace ? places_.at(name.tile) : 0;
   return task;
 }
 
-Task TaskSchedule::take() {
+Task TileSchedule::take() {
   const std::optional<TaskName> name = next();
   PTIN_CHECK(name.has_value());
   running_[*name] = ++clock_;
@@ -114,7 +117,8 @@ Task TaskSchedule::take() {
 // -------------------------------------------------------------------------------------------------
 // What follows.
 
-void TaskSchedule::done(const TaskName& name, const TaskResult& result) {
+void TileSchedule::done(const TaskName& name, const TaskResult& result) {
+  progress(name, ~std::uint64_t{0});  // another process does not tell how far it is
   running_.erase(name);
   const bool was_again = again_.erase(name) > 0;
   if (name.kind == TaskKind::kPlace) {
@@ -132,7 +136,7 @@ void TaskSchedule::done(const TaskName& name, const TaskResult& result) {
   log_.checkpoint(false);
 }
 
-void TaskSchedule::take_up(const TaskResults& results) {
+void TileSchedule::take_up(const TaskResults& results) {
   for (const auto& [name, result] : results) {
     log_.note_done(name, result);
   }
@@ -142,7 +146,7 @@ void TaskSchedule::take_up(const TaskResults& results) {
 }
 
 /// Makes a tile above ready when this task was done with all its children, unless that is past.
-void TaskSchedule::make_ready(TaskKind kind, const TileId& parent) {
+void TileSchedule::make_ready(TaskKind kind, const TileId& parent) {
   const TaskName name{kind, parent};
   if (!log_.is_done(name) && !running_.contains(name) && !again_.contains(name) &&
       are_inputs_there(name)) {
@@ -150,7 +154,7 @@ void TaskSchedule::make_ready(TaskKind kind, const TileId& parent) {
   }
 }
 
-void TaskSchedule::follow(const TaskName& name) {
+void TileSchedule::follow(const TaskName& name) {
   const bool is_root = name.tile == tree_.root();
   if (name.kind == TaskKind::kCollapse || name.kind == TaskKind::kJoin) {
     if (!is_root) {
@@ -163,7 +167,7 @@ void TaskSchedule::follow(const TaskName& name) {
 }
 
 /// Removes what nobody reads any more. The last closing's bounds stay: T0 is finished with them.
-void TaskSchedule::drop_inputs(const TaskName& name) {
+void TileSchedule::drop_inputs(const TaskName& name) {
   if (name.kind == TaskKind::kJoin || name.kind == TaskKind::kClose) {
     for (const auto& [tile, file] : graph_.inputs_of(name)) {
       log_.remove_later(tile, file);
@@ -172,7 +176,7 @@ void TaskSchedule::drop_inputs(const TaskName& name) {
 }
 
 /// Gives pages their place, as far as the sizes of all before them are known.
-void TaskSchedule::find_places() {
+void TileSchedule::find_places() {
   for (; next_place_ < order_.output().size(); ++next_place_) {
     const TileId& tile = order_.output()[next_place_];
     const auto result = log_.results().find(producer_of(tile, TileFile::kPages));
@@ -186,7 +190,7 @@ void TaskSchedule::find_places() {
 }
 
 /// Adds to the output what is in its place, as far as nothing before it is missing.
-void TaskSchedule::take_placed() {
+void TileSchedule::take_placed() {
   while (!is_complete()) {
     const TileId& tile = order_.output()[static_cast<std::size_t>(log_.written())];
     const TaskName producer = producer_of(tile, TileFile::kDescriptions);
@@ -207,7 +211,7 @@ void TaskSchedule::take_placed() {
   }
 }
 
-void TaskSchedule::add_segments(const TileId& tile) {
+void TileSchedule::add_segments(const TileId& tile) {
   const TaskName producer = producer_of(tile, TileFile::kDescriptions);
   const InputFile input{tile, TileFile::kDescriptions,
                         log_.results().at(producer).facts(TileFile::kDescriptions)};
@@ -223,11 +227,48 @@ void TaskSchedule::add_segments(const TileId& tile) {
 }
 
 // -------------------------------------------------------------------------------------------------
+// Progress.
+
+/// Counts those leaves of a batch that are done, by the samples of them that are.
+/// @return  Whether there are more than before: a batch that is done again counts once.
+bool TileSchedule::count(const TaskName& name, std::uint64_t done) {
+  if (name.kind != TaskKind::kCollapse && name.kind != TaskKind::kTighten) {
+    return false;
+  }
+  Counts now;
+  for (const TileId& leaf : leaves_of_batch(tree_, name.tile)) {
+    const std::uint64_t samples = tree_.window(leaf).samples();
+    if (now.samples + samples > done) {
+      break;
+    }
+    now.samples += samples;
+    ++now.leaves;
+  }
+  Counts& before = counted_[name];
+  if (now.leaves <= before.leaves) {
+    return false;
+  }
+  all_[name.kind].samples += now.samples - before.samples;
+  all_[name.kind].leaves += now.leaves - before.leaves;
+  before = now;
+  return true;
+}
+
+void TileSchedule::progress(const TaskName& name, std::uint64_t done) {
+  const std::lock_guard lock(mutex_);
+  if (count(name, done) && tell_) {
+    const std::uint64_t all = tree_.window(tree_.root()).samples();
+    const Counts& counts = all_[name.kind];
+    tell_({stage_of(name.kind), std::min(counts.samples, all), all, counts.leaves, tree_.leaves()});
+  }
+}
+
+// -------------------------------------------------------------------------------------------------
 // Damage.
 
 /// Of a task that was done again for one of its files: removes the others where their readers are
 /// done already.
-void TaskSchedule::drop_what_nobody_needs(const TaskName& name) {
+void TileSchedule::drop_what_nobody_needs(const TaskName& name) {
   const auto drop_after = [&](TileFile file, const TaskName& reader) {
     if (log_.is_done(reader) && !again_.contains(reader)) {
       log_.remove_later(name.tile, file);
@@ -249,7 +290,7 @@ void TaskSchedule::drop_what_nobody_needs(const TaskName& name) {
   }
 }
 
-void TaskSchedule::write_again(const DamagedInput& damage) {
+void TileSchedule::write_again(const DamagedInput& damage) {
   const TaskName name = damage.producer();
   if (running_.contains(name) || again_.contains(name)) {
     return;  // somebody met the same damage before
@@ -263,7 +304,7 @@ void TaskSchedule::write_again(const DamagedInput& damage) {
   again_.insert(name);
 }
 
-void TaskSchedule::failed(const TaskName& name, const DamagedInput& damage) {
+void TileSchedule::failed(const TaskName& name, const DamagedInput& damage) {
   const auto renewed = renewed_.find(damage.producer());
   const bool read_the_new = renewed == renewed_.end() || renewed->second < running_.at(name);
   running_.erase(name);

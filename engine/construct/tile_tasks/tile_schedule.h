@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Which tasks of a build may be done next, and what follows from those that are done.
+// Which tasks of tiles may be done next, and what follows from those that are done.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <vector>
 
-#include "engine/construct/tasks/task.h"
+#include "engine/construct/tasks/task_schedule.h"
 #include "engine/construct/tile_tasks/batch_order.h"
 #include "engine/construct/tile_tasks/build_log.h"
 #include "engine/construct/tile_tasks/task_graph.h"
@@ -25,29 +27,24 @@ namespace ptin {
 /// where the sizes of those before them say, so several tasks place pages at once; descriptions are
 /// added to the output behind them.
 ///
-/// A task that was handed out is either done or failed. What failed on a damaged input comes again,
-/// after the task that wrote the input.
-/// Threads: one at a time.
-class TaskSchedule {
+/// What failed on a damaged input comes again, after the task that wrote the input.
+class TileSchedule final : public TaskSchedule {
  public:
+  /// Told the samples and leaves that are done, by one thread at a time; may be empty.
+  using Tell = std::function<void(const StageProgress& progress)>;
   /// Takes up what the log says is done. All arguments must outlive the schedule.
-  TaskSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,
-               BuildLog& log);
+  TileSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,
+               BuildLog& log, Tell tell);
 
-  /// Memory that the next task takes, in bytes. None when there is no task to hand out, or when
-  /// those left must wait for one that is being done.
   /// @throws Error resource_exhausted  a join needs more than there is
-  [[nodiscard]] std::optional<std::uint64_t> next_bytes() const;
-  /// Hands that task out. REQUIRES: next_bytes() has a value.
-  [[nodiscard]] Task take();
-  /// To be called when a task was done.
+  [[nodiscard]] std::optional<std::uint64_t> next_bytes() const override;
+  [[nodiscard]] Task take() override;
   /// @throws Error as the log and the output
-  void done(const TaskName& name, const TaskResult& result);
-  /// To be called when a task met a damaged input.
+  void done(const TaskName& name, const TaskResult& result) override;
   /// @throws Error  the damage, when the same file was written anew twice already
-  void failed(const TaskName& name, const DamagedInput& damage);
-  /// Takes up what was done elsewhere, before anything is handed out.
-  void take_up(const TaskResults& results);
+  void failed(const TaskName& name, const DamagedInput& damage) override;
+  void progress(const TaskName& name, std::uint64_t done) override;
+  void take_up(const TaskResults& results) override;
   /// To be called when somebody else met a damaged file of a task: it is done again.
   /// @throws Error  as failed()
   void write_again(const DamagedInput& damage);
@@ -68,6 +65,11 @@ class TaskSchedule {
   void take_placed();
   void add_segments(const TileId& tile);
   void drop_what_nobody_needs(const TaskName& name);
+  /// Leaves, and the samples in them.
+  struct Counts {
+    std::uint64_t samples = 0, leaves = 0;
+  };
+  bool count(const TaskName& name, std::uint64_t done);
 
   const TileTree& tree_;
   const BatchOrder& order_;
@@ -85,6 +87,10 @@ class TaskSchedule {
   std::set<TileId> placed_;      ///< Pages in their place, ahead of those before them.
   std::size_t next_place_;       ///< In BatchOrder::output(): the first without a place.
   std::uint64_t end_of_places_;  ///< Where its pages go.
+  Tell tell_;
+  std::mutex mutex_;                    ///< Guards what follows.
+  std::map<TaskName, Counts> counted_;  ///< Of batches, what was done of them.
+  std::map<TaskKind, Counts> all_;      ///< Of all batches.
 };
 
 }  // namespace ptin
