@@ -33,10 +33,10 @@ template <class T>
     if (fault == std::errc::result_out_of_range) {
       // A wider type still tells which of both it is; where even that is too narrow, the exponent does.
       number = number.substr(0, static_cast<std::size_t>(end - number.data()));
-      constexpr auto kInfinity = std::numeric_limits<long double>::infinity();
+      constexpr auto kTooLarge = std::numeric_limits<long double>::infinity();
       const bool is_tiny = number.find_first_of("eE") != std::string_view::npos &&
                            number[number.find_first_of("eE") + 1] == '-';
-      long double wide = is_tiny ? 0.0L : number.starts_with('-') ? -kInfinity : kInfinity;
+      long double wide = is_tiny ? 0.0L : number.starts_with('-') ? -kTooLarge : kTooLarge;
       std::from_chars(number.data(), end, wide);
       text.remove_prefix(static_cast<std::size_t>(end - text.data()));
       return static_cast<T>(wide);
