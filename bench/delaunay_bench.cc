@@ -14,7 +14,7 @@
 
 #include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/points/point_source.h"
-#include "engine/construct/tasks/stage_runner.h"
+#include "engine/construct/tasks/task_driver.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/support/las_file.h"
 #include "tests/support/test_folder.h"
@@ -52,8 +52,9 @@ std::string las_of(Kind kind, std::uint64_t n) {
 
 /// Reads and sorts a file on one thread. The files of the buckets have no names any more.
 PointBuckets sorted(const std::string& path, std::uint64_t memory) {
-  const RunStage run = [&](const SourceStage& stage, StageWorker& worker) {
-    return run_stage(stage, worker, {1, memory, {}, {}});
+  const RunTasks run = [&](TaskList& tasks, TaskWorker& worker) {
+    tasks.set_bytes(memory);
+    run_alone(tasks, worker);
   };
   const test::TestFolder folder(std::filesystem::current_path());
   PointSource source({path}, {}, {{FileLayer::system(), folder.path()}, run});

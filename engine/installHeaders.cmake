@@ -8,6 +8,7 @@ set(public_headers
     engine/check.h
     engine/construct/build.h
     engine/construct/build_observer.h
+    engine/construct/build_option_table.h
     engine/construct/build_options.h
     engine/construct/build_plan.h
     engine/construct/build_parts.h
@@ -60,6 +61,7 @@ set(public_headers
     engine/growing_array.h
     engine/large_array.h
     engine/memory_units.h
+    engine/number.h
     engine/mesh/link.h
     engine/mesh/star.h
     engine/mesh/tin.h

@@ -16,7 +16,7 @@
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/resume_fixture.h"
-#include "tests/construct/tasks/damaging_driver.h"
+#include "tests/construct/tile_tasks/damaging_driver.h"
 #include "tests/construct/told_build.h"
 #include "tests/support/share_of_cases.h"
 

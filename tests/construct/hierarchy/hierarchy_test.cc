@@ -16,7 +16,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/construct/raster/raster_tile.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
 #include "tests/construct/hierarchy_fixture.h"

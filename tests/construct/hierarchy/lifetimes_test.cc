@@ -20,7 +20,7 @@
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/stored_detail.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/construct/tin/tin_tile.h"
 #include "engine/error.h"

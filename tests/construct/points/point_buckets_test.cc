@@ -103,12 +103,13 @@ TEST(PointSource, SaysThatAFolderIsMissing) {
 
 TEST(PointSource, StopsInEveryStageAndLeavesNothingBehind) {
   const MemoryFile file("set.xyz", text_of(points_of(PointKind::kEven, 5000, 1)));
-  for (const std::string at : {kReadingStage, kSharingStage, kSortingStage}) {
+  for (const TaskKind kind : {TaskKind::kRead, TaskKind::kShare, TaskKind::kSort}) {
+    const std::string at = stage_of(kind);
     SCOPED_TRACE(at);
     const oracle::ScratchFolder folder, kept;
     std::stop_source stop;
-    const auto progress = [&](const std::string& stage, std::uint64_t, std::uint64_t) {
-      if (stage == at) {
+    const auto progress = [&](const StageProgress& told) {
+      if (told.stage == at) {
         stop.request_stop();
       }
     };

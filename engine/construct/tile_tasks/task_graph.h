@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -25,8 +24,6 @@ struct TaskMemory {
   std::uint64_t for_reading = 0;
 };
 
-using TaskResults = std::map<TaskName, TaskResult>;
-
 /// A task that is done with its result, as one line of a manifest.
 [[nodiscard]] nlohmann::json line_of(const TaskName& name, const TaskResult& result);
 /// Takes such a line up; lines of other kinds are left alone.
@@ -44,6 +41,8 @@ class TaskGraph {
   /// @param results  Of the tasks that write its inputs, at least.
   /// @throws Error resource_exhausted  a join needs more than there is
   [[nodiscard]] std::uint64_t bytes_of(const TaskName& name, const TaskResults& results) const;
+  /// True when the results of all tasks that write its inputs are there.
+  [[nodiscard]] bool can_be_done(const TaskName& name, const TaskResults& results) const;
   /// The task as a worker is told, but for Task::offset.
   /// @throws Error as bytes_of()
   [[nodiscard]] Task describe(const TaskName& name, const TaskResults& results) const;

@@ -12,11 +12,11 @@
 
 #include "engine/construct/hierarchy/tile_collapse.h"
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tasks/segment_output.h"
 #include "engine/construct/tasks/stage_progress.h"
 #include "engine/construct/tasks/task_driver.h"
-#include "engine/construct/tasks/task_schedule.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tile_tasks/segment_output.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
@@ -25,7 +25,7 @@ struct HierarchyOptions {
   CollapseOptions collapse;
   int threads = 1;
   TaskMemory memory;
-  std::function<void(std::uint64_t bytes)> give_back;   ///< PieceLimits::give_back.
+  std::function<void(std::uint64_t bytes)> give_back;   ///< TaskLimits::give_back.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   TaskDriver* driver = nullptr;  ///< Who runs the tasks; borrowed; null: threads of this process.
   std::stop_token stop;
@@ -46,7 +46,7 @@ struct BuiltHierarchy {
 /// tiles of level 1 are final when the tile is collapsed, since these tiles measure all their
 /// samples. The segments of tiles above, a sixteenth of all records, lie in the workspace until
 /// tightening.
-/// @param make_starter  Called once for each thread, and once more for tightening.
+/// @param make_starter  Called once for each task that runs at once, and once more for tightening.
 /// @throws Error as simplify(), the starters and the output; resource_exhausted, io_error. After
 ///     resource_exhausted, io_error and cancelled a later call can take the workspace up again.
 [[nodiscard]] BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,

@@ -1,58 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "engine/check.h"
 #include "engine/construct/hierarchy/tile_files.h"
-#include "engine/construct/tasks/build_log.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/build_log.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 namespace ptin {
 
 namespace {
-
-/// Counts leaves and samples of both stages, and tells them. Threads: any number.
-class StageCounts {
- public:
-  StageCounts(const TileTree& tree, const BuildLog& log, const HierarchyOptions& options)
-      : tree_(tree), options_(options) {
-    for (const auto& [name, result] : log.results()) {
-      if (name.tile.level <= 1) {
-        Counts& counts = counts_of(name.kind);
-        counts.samples += tree.window(name.tile).samples();
-        counts.leaves += leaves_of_batch(tree, name.tile).size();
-      }
-    }
-  }
-
-  void leaf_done(TaskKind kind, std::uint64_t samples) {
-    const std::lock_guard lock(mutex_);
-    Counts& counts = counts_of(kind);
-    counts.samples += samples;
-    ++counts.leaves;
-    if (options_.progress) {
-      const std::uint64_t all = tree_.window(tree_.root()).samples();
-      options_.progress({kind == TaskKind::kCollapse ? "collapsing" : "tightening",
-                         std::min(counts.samples, all), all,
-                         std::min(counts.leaves, tree_.leaves()), tree_.leaves()});
-    }
-  }
-
- private:
-  struct Counts {
-    std::uint64_t samples = 0, leaves = 0;
-  };
-  Counts& counts_of(TaskKind kind) { return kind == TaskKind::kCollapse ? collapsed_ : tightened_; }
-
-  const TileTree& tree_;
-  const HierarchyOptions& options_;
-  std::mutex mutex_;
-  Counts collapsed_, tightened_;
-};
 
 /// T0 and its deaths: what the root pushed up, with the final bounds of its records.
 void take_coarsest(const BuildLog& log, const TileTree& tree, const MeasureUnits& units,
@@ -84,14 +45,12 @@ BuiltHierarchy build_hierarchy(const std::function<LeafStarter()>& make_starter,
                                Workspace& workspace, SegmentOutput& output) {
   const BatchOrder order(tree);
   BuildLog log(workspace, output, options.checkpoint_interval);
-  StageCounts counts(tree, log, options);
-  TaskWorker worker({tree, options.collapse, make_starter, output.packer(), workspace.files(),
-                     workspace.temporary_folder()},
-                    [&](TaskKind kind, std::uint64_t samples) { counts.leaf_done(kind, samples); });
-  TaskSchedule schedule(tree, order, options.memory, log);
-  ThreadDriver threads;
+  TileWorker worker({tree, options.collapse, make_starter, output.packer(), workspace.files(),
+                     workspace.temporary_folder()});
+  TileSchedule schedule(tree, order, options.memory, log, options.progress);
+  TaskDriver threads;
   TaskDriver& driver = options.driver != nullptr ? *options.driver : threads;
-  const PieceLimits limits{options.threads, options.memory.for_tiles, options.give_back};
+  const TaskLimits limits{options.threads, options.memory.for_tiles, options.give_back};
   BuiltHierarchy built;
   for (bool is_read = false; !is_read;) {
     built.most_bytes =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The order of batches, messages of tasks, what was done elsewhere, and files that show late.
-#include "engine/construct/tasks/task_schedule.h"
+#include "engine/construct/tile_tasks/tile_schedule.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -20,7 +20,7 @@
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 #include "tests/construct/resume_fixture.h"
 
 namespace ptin {
@@ -112,16 +112,21 @@ TEST(TaskMessages, OfEveryTaskAreShortHoweverHighTheTree) {
 class TakesUp final : public TaskDriver {
  public:
   explicit TakesUp(std::vector<TaskResults> told) : told_(std::move(told)) {}
-  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
+  [[nodiscard]] bool begin(const BuildNote& note) override {
+    is_read_ = !note.index.is_null();
+    return true;
+  }
+  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const TaskLimits& limits,
                     const std::stop_token& stop) override {
-    for (const TaskResults& results : std::exchange(told_, {})) {
+    for (const TaskResults& results : is_read_ ? std::exchange(told_, {}) : decltype(told_){}) {
       schedule.take_up(results);
     }
-    return ThreadDriver().run(schedule, worker, limits, stop);
+    return TaskDriver::run(schedule, worker, limits, stop);
   }
 
  private:
   std::vector<TaskResults> told_;
+  bool is_read_ = false;
 };
 
 /// Does all tasks of a tree in an order that is as random as their inputs allow, and tells of some.
@@ -145,18 +150,15 @@ TaskResults done_in_any_order(BuildWorker& worker, std::mt19937& random) {
   while (!left.empty()) {
     std::shuffle(left.begin(), left.end(), random);
     const auto next = std::find_if(left.begin(), left.end(), [&](const TaskName& name) {
-      const auto inputs = graph.inputs_of(name);
-      return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
-        return done.contains(producer_of(input.first, input.second));
-      });
+      return graph.can_be_done(name, done);
     });
-    done[*next] = worker.tasks().run(graph.describe(*next, done), 0, {});
+    done[*next] = worker.tasks().run(graph.describe(*next, done));
     left.erase(next);
   }
   return done;
 }
 
-TEST(TaskSchedule, TakesUpWhatWasDoneElsewhereInAnyOrder) {
+TEST(TileSchedule, TakesUpWhatWasDoneElsewhereInAnyOrder) {
   std::mt19937 random(3);
   for (const int left_out : {0, 0, 3, 40}) {
     const InterruptibleBuild of(SourceKind::kRaster);
@@ -210,7 +212,7 @@ TEST(BuildWorker, WaitsForInputsThatShowLate) {
     const TileId above{2, 0, 0};
     for (const TileId& batch : worker.tree().children(above)) {
       const TaskName name{TaskKind::kCollapse, batch};
-      done[name] = worker.tasks().run(graph.describe(name, done), 0, {});
+      done[name] = worker.tasks().run(graph.describe(name, done));
     }
     const TileId hidden = worker.tree().children(above).back();
     const std::string path = note_in(note).temporary + "/" + file_name(hidden, TileFile::kPushed);
@@ -221,10 +223,10 @@ TEST(BuildWorker, WaitsForInputsThatShowLate) {
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
         std::filesystem::rename(path + "-hidden", path);
       });
-      EXPECT_GT(worker.tasks().run(join, 0, {}).facts(TileFile::kPushed).bytes, 0U);
+      EXPECT_GT(worker.tasks().run(join).facts(TileFile::kPushed).bytes, 0U);
       late.join();
     } else {
-      EXPECT_THROW(static_cast<void>(worker.tasks().run(join, 0, {})), DamagedInput);
+      EXPECT_THROW(static_cast<void>(worker.tasks().run(join)), DamagedInput);
     }
   }
 }

@@ -42,13 +42,13 @@ class DamagingDriver final : public TaskDriver {
     folder_ = note.temporary;
     return true;
   }
-  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& /*limits*/,
-                    const std::stop_token& stop) override {
+  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const TaskLimits& /*limits*/,
+                    const std::stop_token& /*stop*/) override {
     while (schedule.next_bytes()) {
       const Task task = schedule.take();
       before_(task, folder_);
       try {
-        const TaskResult result = worker.run(task, 0, stop);
+        const TaskResult result = worker.run(task);
         ++done[task.name];
         schedule.done(task.name, result);
       } catch (const DamagedInput& damage) {

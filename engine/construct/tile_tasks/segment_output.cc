@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/segment_output.h"
+#include "engine/construct/tile_tasks/segment_output.h"
 
 namespace ptin {
 

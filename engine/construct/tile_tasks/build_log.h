@@ -13,8 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tasks/segment_output.h"
-#include "engine/construct/tasks/task_graph.h"
+#include "engine/construct/tile_tasks/segment_output.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 
 namespace ptin {
 

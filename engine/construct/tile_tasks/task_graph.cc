@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/task_graph.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 
+#include <algorithm>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tile_tasks/batch_order.h"
 #include "engine/memory_units.h"
 
 namespace ptin {
@@ -35,8 +36,6 @@ void take_line(const nlohmann::json& line, TaskResults& results) {
 std::vector<std::pair<TileId, TileFile>> TaskGraph::inputs_of(const TaskName& name) const {
   std::vector<std::pair<TileId, TileFile>> inputs;
   switch (name.kind) {
-    case TaskKind::kCollapse:
-      break;
     case TaskKind::kJoin:
       for (const TileId& child : tree_.children(name.tile)) {
         inputs.emplace_back(child, TileFile::kPushed);
@@ -56,6 +55,8 @@ std::vector<std::pair<TileId, TileFile>> TaskGraph::inputs_of(const TaskName& na
       break;
     case TaskKind::kPlace:
       inputs.emplace_back(name.tile, TileFile::kPages);
+      break;
+    default:  // what reads the source alone
       break;
   }
   return inputs;
@@ -85,10 +86,17 @@ std::uint64_t TaskGraph::bytes_of(const TaskName& name, const TaskResults& resul
     case TaskKind::kClose:
       return memory_.tile_bytes.of_close(
           results.at({TaskKind::kJoin, name.tile}).facts(TileFile::kSegment).bytes);
-    case TaskKind::kPlace:
+    default:
       break;
   }
-  return 0;  // written out of a mapping
+  return 0;  // pages are placed out of a mapping
+}
+
+bool TaskGraph::can_be_done(const TaskName& name, const TaskResults& results) const {
+  const auto inputs = inputs_of(name);
+  return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
+    return results.contains(producer_of(input.first, input.second));
+  });
 }
 
 Task TaskGraph::describe(const TaskName& name, const TaskResults& results) const {

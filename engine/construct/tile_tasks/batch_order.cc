@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tile_tasks/batch_order.h"
 
 #include <algorithm>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "engine/construct/hierarchy/tighten.h"
 #include "engine/construct/tasks/await_file.h"
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tile_tasks/batch_order.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
@@ -14,25 +14,14 @@ namespace ptin {
 
 namespace {
 
-/// Joins raises of several leaves: leaves one entry for each record, the maxima.
-void combine(std::vector<BoundsRaise>& raises) {
-  std::sort(raises.begin(), raises.end(),
-            [](const BoundsRaise& a, const BoundsRaise& b) { return a.record < b.record; });
-  std::size_t kept = 0;
-  for (const BoundsRaise& r : raises) {
-    if (kept > 0 && raises[kept - 1].record == r.record) {
-      RecordBounds& bounds = raises[kept - 1].bounds;
-      bounds.error = std::max(bounds.error, r.bounds.error);
-      bounds.deviation = std::max(bounds.deviation, r.bounds.deviation);
-    } else {
-      raises[kept++] = r;
-    }
-  }
-  raises.resize(kept);
-}
-
 void append(std::vector<BoundsRaise>& to, std::span<const BoundsRaise> raises) {
   to.insert(to.end(), raises.begin(), raises.end());
+}
+
+void tell(const Task& task, std::uint64_t samples) {
+  if (task.progress) {
+    task.progress(samples);
+  }
 }
 
 std::string path_of(const TaskSetup& setup, const TileId& tile, TileFile file) {
@@ -65,12 +54,12 @@ class SegmentFiles {
 
 }  // namespace
 
-TaskResult TaskWorker::run(const Task& task, std::size_t thread, const std::stop_token& stop) {
+TaskResult TileWorker::run(const Task& task) {
   for (const InputFile& input : task.inputs) {
-    await_file(path_of(setup_, input.tile, input.file), setup_.patience, stop);
+    await_file(path_of(setup_, input.tile, input.file), setup_.patience, task.stop);
   }
   try {
-    return run_one(task, thread, stop);
+    return run_one(task);
   } catch (const DamagedInput&) {
     const std::lock_guard lock(mutex_);  // what is kept open may be what is damaged
     segments_.clear();
@@ -79,25 +68,17 @@ TaskResult TaskWorker::run(const Task& task, std::size_t thread, const std::stop
   }
 }
 
-void TaskWorker::tell_done(const TaskName& name) const {
-  if (name.kind == TaskKind::kCollapse || name.kind == TaskKind::kTighten) {
-    for (const TileId& leaf : leaves_of_batch(setup_.tree, name.tile)) {
-      leaf_done_(name.kind, setup_.tree.window(leaf).samples());
-    }
-  }
-}
-
-TaskResult TaskWorker::run_one(const Task& task, std::size_t thread, const std::stop_token& stop) {
+TaskResult TileWorker::run_one(const Task& task) {
   switch (task.name.kind) {
     case TaskKind::kCollapse:
-      return collapse(task.name.tile, starter(thread), stop);
+      return collapse(task);
     case TaskKind::kJoin:
-      return join(task, stop);
+      return join(task);
     case TaskKind::kTighten:
-      return tighten(task, starter(thread), stop);
+      return tighten(task);
     case TaskKind::kClose:
       return close(task);
-    case TaskKind::kPlace:
+    default:
       break;
   }
   return place(task);
@@ -106,36 +87,39 @@ TaskResult TaskWorker::run_one(const Task& task, std::size_t thread, const std::
 // -------------------------------------------------------------------------------------------------
 // What several tasks need.
 
-ArrayFileWriter TaskWorker::writer(const TileId& tile, TileFile file) const {
+ArrayFileWriter TileWorker::writer(const TileId& tile, TileFile file) const {
   return {setup_.files, path_of(setup_, tile, file)};
 }
 
-void TaskWorker::finish(ArrayFileWriter& file, ArrayFileFacts& facts) const {
+void TileWorker::finish(ArrayFileWriter& file, ArrayFileFacts& facts) const {
   if (setup_.syncs) {
     file.sync();
   }
   facts = file.finish();
 }
 
-void TaskWorker::write_pushed_of(const TileId& tile, const Tile& pushed, TaskResult& result) const {
+void TileWorker::write_pushed_of(const TileId& tile, const Tile& pushed, TaskResult& result) const {
   ArrayFileWriter file = writer(tile, TileFile::kPushed);
   write_pushed(file, pushed);
   finish(file, result.facts(TileFile::kPushed));
 }
 
-/// A copy: the others may go while it is used.
-LeafStarter TaskWorker::starter(std::size_t thread) {
+LeafStarter TileWorker::take_starter() {
   const std::lock_guard lock(mutex_);
-  while (starters_.size() <= thread) {
-    starters_.emplace_back();
+  if (starters_.empty()) {
+    return setup_.make_starter();
   }
-  if (!starters_[thread]) {
-    starters_[thread] = setup_.make_starter();
-  }
-  return starters_[thread];
+  LeafStarter starter = std::move(starters_.back());
+  starters_.pop_back();
+  return starter;
 }
 
-TaskWorker::SharedSegment TaskWorker::segment_of(const InputFile& input) {
+void TileWorker::put_back(LeafStarter starter) {
+  const std::lock_guard lock(mutex_);
+  starters_.push_back(std::move(starter));
+}
+
+TileWorker::SharedSegment TileWorker::segment_of(const InputFile& input) {
   const std::lock_guard lock(mutex_);
   std::weak_ptr<const SegmentFile>& known = segments_[input.tile];
   SharedSegment segment = known.lock();
@@ -149,7 +133,7 @@ TaskWorker::SharedSegment TaskWorker::segment_of(const InputFile& input) {
   return segment;
 }
 
-std::shared_ptr<const Tin> TaskWorker::coarsest(const InputFile& root) {
+std::shared_ptr<const Tin> TileWorker::coarsest(const InputFile& root) {
   const std::lock_guard lock(mutex_);
   if (!coarsest_) {
     coarsest_ = read_input(setup_.folder, root, [&](ArrayFileReader& file) {
@@ -162,24 +146,27 @@ std::shared_ptr<const Tin> TaskWorker::coarsest(const InputFile& root) {
 // -------------------------------------------------------------------------------------------------
 // Collapsing.
 
-TaskResult TaskWorker::collapse(const TileId& top, const LeafStarter& start,
-                                const std::stop_token& stop) {
+TaskResult TileWorker::collapse(const Task& task) {
+  const TileId& top = task.name.tile;
+  LeafStarter start = take_starter();
   TaskResult result;
   SegmentFiles segments(setup_, top);
   std::vector<CollapsedLeaf> leaves;
+  std::uint64_t samples = 0;
   for (const TileId& id : leaves_of_batch(setup_.tree, top)) {
-    CollapsedLeaf leaf = collapse_leaf(id, setup_.tree, start, setup_.collapse, stop);
+    CollapsedLeaf leaf = collapse_leaf(id, setup_.tree, start, setup_.collapse, task.stop);
     segments.add(leaf.records);
     result.lone_samples += leaf.lone_samples;
     leaf.records = {};
     leaves.push_back(std::move(leaf));
-    leaf_done_(TaskKind::kCollapse, setup_.tree.window(id).samples());
+    tell(task, samples += setup_.tree.window(id).samples());
   }
+  put_back(std::move(start));
   if (top.level == 0) {
     write_pushed_of(top, leaves.front().pushed, result);
   } else {
     CollapsedGroup group =
-        collapse_group(top, setup_.tree, std::move(leaves), setup_.collapse, stop);
+        collapse_group(top, setup_.tree, std::move(leaves), setup_.collapse, task.stop);
     segments.add(group.records);
     write_pushed_of(top, group.pushed, result);
   }
@@ -189,7 +176,7 @@ TaskResult TaskWorker::collapse(const TileId& top, const LeafStarter& start,
   return result;
 }
 
-TaskResult TaskWorker::join(const Task& task, const std::stop_token& stop) {
+TaskResult TileWorker::join(const Task& task) {
   const TileId& id = task.name.tile;
   if (id == setup_.tree.root()) {
     const std::lock_guard lock(mutex_);
@@ -202,7 +189,7 @@ TaskResult TaskWorker::join(const Task& task, const std::stop_token& stop) {
     }));
   }
   const CollapsedInner inner =
-      collapse_inner(id, setup_.tree, std::move(parts), setup_.collapse, stop);
+      collapse_inner(id, setup_.tree, std::move(parts), setup_.collapse, task.stop);
   TaskResult result;
   ArrayFileWriter segment = writer(id, TileFile::kSegment);
   write_segment(segment, inner.segment);
@@ -215,8 +202,7 @@ TaskResult TaskWorker::join(const Task& task, const std::stop_token& stop) {
 // Tightening (engine/DESIGN.md, section 5.7). Raises are maxima: they commute, and those of a tile's
 // leaves are joined on their way up, level by level.
 
-TaskResult TaskWorker::tighten(const Task& task, const LeafStarter& start,
-                               const std::stop_token& stop) {
+TaskResult TileWorker::tighten(const Task& task) {
   const std::shared_ptr<const Tin> t0 = coarsest(task.inputs.front());
   const auto above = std::span(task.inputs).subspan(1);
   std::vector<SharedSegment> segments;
@@ -226,12 +212,15 @@ TaskResult TaskWorker::tighten(const Task& task, const LeafStarter& start,
     segments.push_back(segment_of(above[i]));
     chain.push_back({segments[i]->view().records, &raises[i]});
   }
+  LeafStarter start = take_starter();
+  std::uint64_t samples = 0;
   for (const TileId& leaf : leaves_of_batch(setup_.tree, task.name.tile)) {
-    stop_if_asked(stop, "the build");
+    stop_if_asked(task.stop, "the build");
     const SampleRange window = setup_.tree.window(leaf);
     replay_over_leaf(chain, *t0, start(window));
-    leaf_done_(TaskKind::kTighten, window.samples());
+    tell(task, samples += window.samples());
   }
+  put_back(std::move(start));
   for (std::size_t i = 0; i < above.size(); ++i) {
     use_input(above[i], [&] { segments[i]->require_undamaged(); });
   }
@@ -245,7 +234,7 @@ TaskResult TaskWorker::tighten(const Task& task, const LeafStarter& start,
   return result;
 }
 
-TaskResult TaskWorker::close(const Task& task) {
+TaskResult TileWorker::close(const Task& task) {
   const TileId& id = task.name.tile;
   const std::size_t above = ancestors_of(setup_.tree, id).size();
   const SharedSegment segment = segment_of(task.inputs.front());
@@ -281,7 +270,7 @@ TaskResult TaskWorker::close(const Task& task) {
   return result;
 }
 
-TaskResult TaskWorker::place(const Task& task) {
+TaskResult TileWorker::place(const Task& task) {
   std::uint64_t offset = task.offset;
   read_input(setup_.folder, task.inputs.front(), [&](ArrayFileReader& file) {
     while (!file.at_end()) {

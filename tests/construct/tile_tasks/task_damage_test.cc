@@ -15,7 +15,7 @@
 #include "engine/construct/build.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/made_raster.h"
-#include "tests/construct/tasks/damaging_driver.h"
+#include "tests/construct/tile_tasks/damaging_driver.h"
 #include "tests/support/share_of_cases.h"
 
 namespace ptin {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/tasks/build_log.h"
+#include "engine/construct/tile_tasks/build_log.h"
 
 namespace ptin {
 
