@@ -1,26 +1,29 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How late cheap questions of `ptin serve` are beside dear ones, hostile bodies and idle connections.
+"""How late cheap questions of `ptin serve` are beside dear ones, hostile bodies, idle connections and attacks.
 
-usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--only NAME ...]
+usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--attacks] [--connections N] [--only NAME ...]
 
 Starts the service on FILE over loopback for each row. Other clients come from 127.0.0.2 and on, as the client that is measured
 comes from 127.0.0.1, and from another process: 40 heights a second, each by a new connection, its time counted from when it was due, and /healthz eight
 times a second. A row has statuses, percentiles in milliseconds, and memory without the file's pages: at the start, at most, and
 two seconds after the others have their last answers. A row whose others were not answered what they are there for tests nothing:
-the status is 1 then.
+the status is 1 then. With --attacks the others are slow, greedy and broken clients (support/attacks.py), N of them (1000 at most)
+from the address of the client that is measured, and the service gives its file away too (--files).
 """
 import argparse
 import collections
 import http.client
 import json
 import multiprocessing
+import shutil
 import socket
 import subprocess
 import sys
 import threading
 import time
 
+from support.attacks import ATTACKS
 from support.markdown import print_head, print_row
 from support.service import Service
 
@@ -72,6 +75,13 @@ def rows(shed):
             [(f"{n} viewsheds", others(n, shed), {200}, {503}) for n in (1, 2, 8, 80)] + hostile +
             [("1024 idle connections", idle(1024), {"connections"}, set()),
              ("300 descriptors, 600 idle", idle(600), {"connections"}, set())])
+
+
+def attack_rows(seconds, connections):
+    def start_of(attack):
+        return lambda service, stop, counts: threading.Thread(target=attack, args=(service, seconds, connections)).start()
+    return [(name, start_of(attack), set(), set()) for name, attack in ATTACKS.items()
+            if shutil.which("slowhttptest") or not name.startswith("slowhttptest")]
 
 
 def answered_viewshed(service, middle):
@@ -141,6 +151,8 @@ def main():
     parser.add_argument("file")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--seconds", type=int, default=5)
+    parser.add_argument("--attacks", action="store_true")
+    parser.add_argument("--connections", type=int, default=900)
     parser.add_argument("--only", nargs="*")
     options = parser.parse_args()
     facts = json.loads(subprocess.run([options.ptin, "info", options.file, "--json"], capture_output=True, check=True).stdout)
@@ -148,17 +160,21 @@ def main():
         facts["bounds"][k] for k in ("min_x", "min_y", "max_x", "max_y")]
     middle = f"POINT({(west + east) / 2}%20{(south + north) / 2})&crs=native"
     place = f"/collections/dem/position?coords={middle}"
-    service = Service(options.ptin, options.file, threads=options.threads)
-    radius, shed = answered_viewshed(service, middle)
-    service.end()
-    print(f"Viewsheds have a radius of {radius}.\n")
+    if options.attacks:
+        chosen = attack_rows(min(options.seconds, 60), min(options.connections, 1000))
+    else:
+        service = Service(options.ptin, options.file, threads=options.threads)
+        radius, shed = answered_viewshed(service, middle)
+        service.end()
+        chosen = rows(shed)
+        print(f"Viewsheds have a radius of {radius}.\n")
     print_head("beside", "heights", "50 % / 99 % / most, ms", "healthz", "50 % / 99 % / most, ms", "what the others got",
                "MiB before / most / after")
     failed = []
-    for name, start, needed, allowed in rows(shed):
+    for name, start, needed, allowed in chosen:
         if options.only and name not in options.only:
             continue
-        service = Service(options.ptin, options.file, threads=options.threads,
+        service = Service(options.ptin, options.file, *(["--files"] if options.attacks else []), threads=options.threads,
                           descriptors=300 if "descriptors" in name else None)
         service.ask(place)
         found, counts, memory = measure(service, place, options.seconds, start)

@@ -1,23 +1,10 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `ptin serve` does while it is attacked: its memory, and how late /healthz is.
-
-usage: bench/serve_attack.py PTIN FILE [--seconds S] [--connections N] [--only NAME ...]
-
-Starts the service on FILE with --files, over loopback alone. Each attack takes S seconds (60 at most) with N connections (1000
-at most); meanwhile /healthz is asked ten times a second, each time by a new connection. A row has the slowest answer, how many
-failed, and memory without the file's pages before, at most, and three seconds after. slowhttptest is Debian's package.
-"""
-import argparse
-import http.client
-import shutil
+"""Slow, greedy and broken clients of `ptin serve`, over loopback alone: functions of a service, so many seconds and so many
+connections. slowhttptest is Debian's package."""
 import socket
 import subprocess
 import threading
 import time
-
-from support.markdown import print_head, print_row
-from support.service import Service
 
 
 def slow_http(*options):
@@ -128,50 +115,3 @@ ATTACKS = {
     "64 slow drips": drips,
     "half-closed sockets": half_closed,
 }
-
-
-def run(service, name, attack, seconds, connections):
-    late, failed, most, stop = [], [0], [0.0], threading.Event()
-
-    def watch():
-        while not stop.wait(0.1):
-            most[0] = max(most[0], service.memory())
-            try:
-                begin = time.perf_counter()
-                is_well = service.ask("/healthz")[0] == 200
-                late.append(1e3 * (time.perf_counter() - begin))
-                failed[0] += not is_well
-            except (OSError, http.client.HTTPException):
-                failed[0] += 1
-    before = service.memory()
-    watcher = threading.Thread(target=watch)
-    watcher.start()
-    attack(service, seconds, connections)
-    stop.set()
-    watcher.join()
-    time.sleep(3)
-    late.sort()
-    print_row(name, f"{late[len(late) // 2]:.1f}", f"{late[-1]:.1f}", f"{failed[0]} of {len(late) + failed[0]}", f"{before:.0f}",
-              f"{most[0]:.0f}", f"{service.memory():.0f}")
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("ptin")
-    parser.add_argument("file")
-    parser.add_argument("--seconds", type=int, default=10)
-    parser.add_argument("--connections", type=int, default=900)
-    parser.add_argument("--only", nargs="+", default=list(ATTACKS), choices=list(ATTACKS))
-    arguments = parser.parse_args()
-    seconds, connections = min(arguments.seconds, 60), min(arguments.connections, 1000)
-    service = Service(arguments.ptin, arguments.file, "--files")
-    print_head("attack", "/healthz, median, ms", "slowest, ms", "failed", "MiB before", "at most", "after")
-    for name in arguments.only:
-        if name.startswith("slowhttptest") and not shutil.which("slowhttptest"):
-            continue
-        run(service, name, ATTACKS[name], seconds, connections)
-    print(f"ended with status {service.end()}")
-
-
-if __name__ == "__main__":
-    main()
