@@ -14,7 +14,7 @@
 #include "engine/geometry/infinity.h"
 #include "engine/query/heights/located_point.h"
 #include "engine/query/living/triangle_at.h"
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/paper/selective_refinement.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/retrieval.h"

@@ -11,10 +11,10 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/living/triangle_at.h"
+#include "engine/query/paper/visibility.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/sight/sight_measure.h"
-#include "engine/query/sight/sight_search.h"
 #include "engine/query/sight/sight_stars.h"
 
 namespace ptin {

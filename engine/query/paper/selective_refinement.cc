@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/paper/selective_refinement.h"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/paper/selective_refinement.h"
 #include "engine/query/sight/sight_predicate.h"
 #include "engine/query/sight/sight_view.h"
 

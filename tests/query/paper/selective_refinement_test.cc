@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What a bounded mesh says that it holds, and that questions count all of it.
-#include "engine/query/refine/bounded_mesh.h"
+#include "engine/query/paper/selective_refinement.h"
 
 #include <cstdint>
 #include <random>

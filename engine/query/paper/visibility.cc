@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/sight/sight_search.h"
+#include "engine/query/paper/visibility.h"
 
 #include <algorithm>
 #include <cmath>
