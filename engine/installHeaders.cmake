@@ -88,7 +88,6 @@ set(public_headers
     engine/query/refine/refine.h
     engine/query/refine/refinement.h
     engine/query/select/accounting.h
-    engine/query/select/answer_by.h
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h

@@ -116,11 +116,4 @@ class LineTracer {
   std::array<bool, layout::kMostDegree + 1> is_wanted_{}, is_crossed_{};
 };
 
-/// Begins to trace, and adds the triangles of a mesh. False when they take more than `most_bytes`, not
-/// counting mesh and pieces.
-/// @throws Error cancelled
-/// Cost: linear in the mesh, and in the segments.
-[[nodiscard]] bool trace_mesh(const Tin& tin, const TraceScope& scope, std::uint64_t most_bytes,
-                              LineTracer& tracer);
-
 }  // namespace ptin
