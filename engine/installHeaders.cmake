@@ -79,6 +79,7 @@ set(public_headers
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
     engine/query/living/grid_cell.h
+    engine/query/living/living_stars.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
     engine/query/received/received_mesh.h
@@ -124,7 +125,6 @@ set(public_headers
     storage/index.h
     storage/index_shape.h
     storage/layout.h
-    storage/living_stars.h
     storage/packed_segment.h
     storage/page_journal.h
     storage/page_store.h

@@ -16,11 +16,11 @@
 #include "engine/query/isoline/isoline_chains.h"
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
+#include "engine/query/living/living_stars.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/region.h"
 #include "storage/layout.h"
-#include "storage/living_stars.h"
 
 namespace ptin {
 

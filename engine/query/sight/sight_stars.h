@@ -90,7 +90,7 @@ class SightStars final : public SightSearch, private BestStarVisitor {
   LevelStars* stars_ = &asked_;
   Aim aim_ = Aim::kVerdict;
   Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
-  StarFilter filter_;    ///< Of the page at hand.
+  LivingFilter filter_;  ///< Of the page at hand.
   double lowest_ = 0.0;  ///< What ends below this height on the page does not matter.
   bool is_cut_ = false;  ///< The budget ended the search.
   double cut_bound_ = 0.0;
