@@ -20,7 +20,11 @@ constexpr std::uint64_t kMostRecords = std::uint64_t{1} << 18;
 /// each walk begins near its end.
 void walk(const PointGroup& group, const SelectiveRefinement& mesh, const StoreFacts& facts) {
   TriangleId near = 0;
-  for (const PointOnCurve& p : group.points) {
+  for (std::size_t i = 0; i < group.points.size(); ++i) {
+    if (i % kStopInterval == 0) {
+      group.context.check_stop();
+    }
+    const PointOnCurve& p = group.points[i];
     const Place place = find_spot(mesh.tin(), p.spot, near);
     near = place.triangle;
     LocatedPoint& point = group.answers[p.index];
@@ -30,7 +34,6 @@ void walk(const PointGroup& group, const SelectiveRefinement& mesh, const StoreF
       set_interval(bounds_at(mesh.bounds(t), group.detail), facts, point);
     }
   }
-  group.context.check_stop();
 }
 
 /// A group whose records might not fit, or are very many, is halved.
