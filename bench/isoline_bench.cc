@@ -41,12 +41,11 @@ void extract(benchmark::State& state, int levels, AnswerBy by, int threads) {
   IsolineRequest request;
   request.levels = levels_between(levels);
   request.threads = threads;
-  request.by = by;
   request.counts_vertices = true;
   QueryCost cost;
   TraceCounts crossed;
   for (auto _ : state) {
-    const Isolines lines = isolines(*terrain(), request);
+    const Isolines lines = terrain()->isolines(request, by);
     cost = lines.cost;
     crossed = lines.crossed;
   }

@@ -63,12 +63,11 @@ void single_pairs(benchmark::State& state, bool verdict_only, AnswerBy by) {
   const std::vector<SightPair> pairs = random_pairs(200);
   SightRequest request;
   request.verdict_only = verdict_only;
-  request.by = by;
   std::uint64_t used = 0;
   for (auto _ : state) {
     used = 0;
     for (const SightPair& pair : pairs) {
-      const QueryCost cost = sight(*terrain(), pair, request).cost;
+      const QueryCost cost = terrain()->sight(pair, request, by).cost;
       used += by == AnswerBy::kStars ? cost.stars_read : cost.records_applied;
     }
   }
