@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/facts/human.h"
 #include "tools/facts/quantity.h"
 
@@ -17,7 +18,7 @@ namespace {
 /// @throws Error invalid_argument  no number above 0, nor two with a stroke between them
 double coefficient_of_factor(const std::string& text) {
   const std::size_t stroke = text.find('/');
-  const auto part = [](const std::string& of) { return number_in(of).value_or(-1.0); };
+  const auto part = [](const std::string& of) { return parse_number<double>(of).value_or(-1.0); };
   const double over = part(text.substr(0, stroke));
   const double under = stroke == std::string::npos ? 1.0 : part(text.substr(stroke + 1));
   const double coefficient = under / over;

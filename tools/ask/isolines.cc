@@ -11,7 +11,6 @@ void add_isolines(Parameters& rows, IsolineQuestion& question) {
   add_detail(rows, request.detail, "",
              "The isolines of the TIN of the terrain's N most important vertices, instead of an "
              "error");
-  rows.push_back(by_row(request.by));
   rows.add("max-lines", &request.most_lines, "N",
            "Refuse, before anything is written, when there are more lines, or "
            "polygons")

@@ -23,7 +23,6 @@ void add_locate(Parameters& rows, LocateRequest& request) {
       rows, request.detail, "; heights come with intervals",
       "The TIN of the terrain's N most important vertices, instead of an error; heights come "
       "with intervals");
-  rows.push_back(by_row(request.by));
 }
 
 LocatedRow::LocatedRow(const MapPoint& position, const LocatedPoint& located, const AffineMap& map)

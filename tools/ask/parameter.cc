@@ -2,14 +2,13 @@
 #include "tools/ask/parameter.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <type_traits>
 
 #include "engine/crs/ground.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/facts/human.h"
 #include "tools/facts/nearest_name.h"
 #include "tools/output/file_name.h"
@@ -65,11 +64,8 @@ bool has_own_unit(const Parameter& p, Door door) {
 }
 
 std::uint64_t whole_of(const Parameter& p, Door door, const std::string& text) {
-  const std::string_view digits = trimmed(text);
-  std::uint64_t number = 0;
-  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  const bool is_one = fault == std::errc() && end == digits.data() + digits.size();
-  if (is_one && range_at(p, door).holds(static_cast<double>(number))) return number;
+  const auto number = parse_number<std::uint64_t>(trimmed(text));
+  if (number && range_at(p, door).holds(static_cast<double>(*number))) return *number;
   refuse_value(p, door, words_of(range_at(p, door), true), text);
 }
 
@@ -169,18 +165,6 @@ bool is_list(const Parameter& p) noexcept {
   return p.most_values > 1 || std::holds_alternative<std::optional<Window>*>(p.into);
 }
 
-std::optional<double> number_in(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (text.empty() || end != text.data() + text.size()) return std::nullopt;
-  // 1e999 is a number for its range to refuse; 1e-999 is 0.
-  if (fault == std::errc::result_out_of_range)
-    return std::strtod(std::string(text).c_str(), nullptr);
-  return fault == std::errc() ? std::optional(number) : std::nullopt;
-}
-
 std::string words_of(const Range& range, bool whole) {
   const bool has_least = range.least > kFinite.least, has_most = range.most < kFinite.most;
   const std::string kind = whole                       ? "a whole number"
@@ -196,7 +180,7 @@ std::string words_of(const Range& range, bool whole) {
 }
 
 double Reading::number_of(const Parameter& p, const std::string& text) const {
-  std::optional<double> number = number_in(text);
+  std::optional<double> number = parse_number<double>(trimmed(text));
   if (!number && has_own_unit(p, door_)) {
     if (const auto length = tools::length_of(text)) number = length->number;
   }
@@ -204,7 +188,13 @@ double Reading::number_of(const Parameter& p, const std::string& text) const {
   const bool is_too_far = door_ == Door::kService && number && !std::isfinite(*number);
   if (number && range_at(p, door_).holds(*number) && !is_too_far) return *number;
   const std::string unit = words_of(p.unit, door_);
+  if (!number && !p.source_unit.empty() && tools::length_of(text)) {
+    refuse("must be a plain number, " + std::string(p.source_unit) +
+               ": those of the source are not known before it is read; " + text + " has a unit",
+           name_at(p, door_));
+  }
   std::string words = words_of(range_at(p, door_)) + (unit.empty() ? "" : ", " + unit);
+  if (!p.source_unit.empty()) words.append(", ").append(p.source_unit);
   if (!number && has_own_unit(p, door_)) {
     words += ", or with a unit behind it (" + tools::known_length_units() + "), as 10ft";
   }
@@ -247,6 +237,10 @@ void Reading::take(const Parameter& p, std::span<const std::string> values) {
     void operator()(std::vector<double>* into) const {
       into->resize(values.size());
       for (std::size_t i = 0; i < values.size(); ++i) reading.put(p, values[i], (*into)[i]);
+    }
+    void operator()(std::optional<std::array<double, 4>>* into) const {
+      into->emplace();
+      for (std::size_t i = 0; i < 4; ++i) (**into)[i] = reading.number_of(p, values[i]);
     }
     void operator()(int* into) const { *into = static_cast<int>(number()); }
     void operator()(std::vector<int>* into) const {

@@ -5,6 +5,7 @@
 // completion script read rows; nothing else writes these facts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -60,10 +61,11 @@ inline constexpr Range kTolerance{.least = 0, .most = std::numeric_limits<double
 
 /// Where a value goes: a flag, numbers, whole numbers, texts, a window; or what reads a text, and
 /// throws Error where it is none of its values.
-using Into = std::variant<bool*, double*, std::optional<double>*, std::vector<double>*, int*,
-                          std::vector<int>*, std::uint32_t*, std::uint64_t*,
-                          std::optional<std::uint64_t>*, std::string*, std::vector<std::string>*,
-                          std::optional<Window>*, std::function<void(const std::string&)>>;
+using Into =
+    std::variant<bool*, double*, std::optional<double>*, std::vector<double>*, int*,
+                 std::vector<int>*, std::uint32_t*, std::uint64_t*, std::optional<std::uint64_t>*,
+                 std::string*, std::vector<std::string>*, std::optional<Window>*,
+                 std::optional<std::array<double, 4>>*, std::function<void(const std::string&)>>;
 
 inline constexpr std::uint32_t kAnyNumberOfValues = std::numeric_limits<std::uint32_t>::max();
 
@@ -75,6 +77,7 @@ struct Parameter {
   std::string_view metavar{};  ///< The value's name in help: "E", "X Y".
   Unit unit = Unit::kNone;
   Range range{};
+  std::string_view source_unit{};  ///< "in CRS units": of the source, so no number has its own.
   std::optional<Range> range_over_http{};   ///< Where HTTP takes more; empty: `range`.
   std::vector<std::string_view> choices{};  ///< Values of a text; empty: any text.
   std::uint32_t least_values = 1, most_values = 1;
@@ -184,8 +187,6 @@ class Reading {
 
 /// Without blanks before and behind.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// A finite or infinite number and nothing else but blanks around it; none else.
-[[nodiscard]] std::optional<double> number_in(std::string_view text);
 /// "a finite number > 0".
 [[nodiscard]] std::string words_of(const Range& range, bool whole = false);
 

@@ -105,7 +105,6 @@ void add_sight(Parameters& rows, SightQuestion& question) {
            "Stop after this many stars (--by splits: records) for a pair; may answer "
            "undecided")
       .at(Door::kProgram);
-  rows.push_back(by_row(request.by));
 }
 
 void set_ground(SightQuestion& question, const Ground& ground) {

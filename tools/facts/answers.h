@@ -3,19 +3,12 @@
 // The words of answers, the same in text and JSON.
 #pragma once
 
-#include <cmath>
 #include <span>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "engine/query/terrain.h"
 
 namespace ptin::tools {
-
-[[nodiscard]] inline nlohmann::json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
 
 [[nodiscard]] constexpr const char* name_of(PointState s) noexcept {
   return s == PointState::kSurface ? "surface" : (s == PointState::kVoid ? "void" : "outside");

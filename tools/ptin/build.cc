@@ -44,7 +44,6 @@ void check_command(BuildCommand& command) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; all that follows --breaklines are breaklines, so put INPUT before it");
   }
-  complete_options(command);
   // An interrupted build may have been killed when its output had just got its name.
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
@@ -201,7 +200,6 @@ std::unique_ptr<BuildCluster> cluster_of(const Context& context) {
 
 /// What a process does that another one directs: tasks, one at a time, without a word.
 int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster& cluster) {
-  complete_options(command);
   return_freed_memory(1);
   install_sigbus_guard();
   Context silent = context;
@@ -290,10 +288,9 @@ int run_build(BuildCommand& command, const Context& context) {
 
 }  // namespace
 
-Action declare_build(CLI::App& app, Context& context) {
+Declared declare_build(Context& context) {
   const auto command = std::make_shared<BuildCommand>();
-  declare_build_options(app, *command);
-  return [command, &context] { return run_build(*command, context); };
+  return {build_rows(*command), [command, &context] { return run_build(*command, context); }};
 }
 
 }  // namespace ptin::tools

@@ -7,19 +7,13 @@
 #include <vector>
 
 #include "engine/construct/build.h"
-
-namespace CLI {
-class App;
-}
+#include "tools/ask/parameter.h"
 
 namespace ptin::tools {
 
 struct BuildCommand {
   std::vector<std::string> inputs;
   std::string output;
-  std::string cost = "error";
-  std::string duplicates, returns;
-  std::vector<double> bbox;
   BuildOptions options;
   bool overwrite = false;
   std::string memory, tmp;
@@ -30,10 +24,7 @@ struct BuildCommand {
   std::string plan;  ///< With `parts`: the file for those who do them.
 };
 
-/// Declares the options of `ptin build`.
-void declare_build_options(CLI::App& app, BuildCommand& command);
-
-/// Puts BuildCommand::options together, after parsing.
-void complete_options(BuildCommand& command);
+/// The parameters of `ptin build`.
+[[nodiscard]] ask::Parameters build_rows(BuildCommand& command);
 
 }  // namespace ptin::tools

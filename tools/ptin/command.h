@@ -12,10 +12,6 @@
 
 #include "tools/ask/parameter.h"
 
-namespace CLI {
-class App;
-}
-
 namespace ptin::tools {
 
 class BuildCluster;
@@ -47,14 +43,14 @@ struct Command {
   const char* name;
   const char* summary;   ///< One line.
   const char* examples;  ///< Ends --help.
-  /// `context` outlives what is declared. Null for `build`, which declares its options by itself.
+  /// `context` outlives what is declared.
   Declared (*declare)(Context& context);
 };
 
 /// Every subcommand, in the order of --help. From it come parsing, help and completion.
 [[nodiscard]] std::span<const Command> commands() noexcept;
 
-Action declare_build(CLI::App& app, Context& context);
+Declared declare_build(Context& context);
 Declared declare_build_part(Context& context);
 Declared declare_info(Context& context);
 Declared declare_verify(Context& context);

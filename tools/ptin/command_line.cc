@@ -105,8 +105,11 @@ void declare(CLI::App& app, const ask::Parameter& row, const ask::Parameters& ro
   if (const std::string text = help_of_value(row, rows); !text.empty()) option->option_text(text);
 }
 
-/// Declares what holds for every subcommand; last, so that --help ends with it.
-void declare_common(CLI::App& app, Context& context) {
+/// Declares parameters, and what holds for every subcommand; last, so that --help ends with it.
+void declare(CLI::App& app, const ask::Parameters& rows, Context& context) {
+  for (const ask::Parameter& row : rows) {
+    if (is_at(row.doors, ask::Door::kProgram)) declare(app, row, rows, *context.reading);
+  }
   app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
   app.add_flag("-q,--quiet", context.quiet,
                "No progress, report or warning: on stderr errors alone");
@@ -135,6 +138,18 @@ struct CommandLine::Inside {
   ask::Reading* reading = nullptr;
 };
 
+void read_words(const ask::Parameters& rows, const std::vector<std::string>& words) {
+  Context context;
+  CLI::App app;
+  declare(app, rows, context);
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  } catch (const CLI::ParseError& error) {
+    refuse(error.what());
+  }
+  context.reading->check(rows);
+}
+
 const char* program_summary() noexcept {
   return "Progressive TINs on disk: terrains larger than memory, refined exactly where asked";
 }
@@ -154,16 +169,8 @@ CommandLine::CommandLine(Context& context, std::span<const Command> all)
   for (const Command& command : all) {
     CLI::App* const sub = app.add_subcommand(command.name, command.summary);
     sub->footer(command.examples);
-    if (command.declare == nullptr) {
-      inside_->declared.push_back({{}, declare_build(*sub, context)});
-    } else {
-      inside_->declared.push_back(command.declare(context));
-      const ask::Parameters& rows = inside_->declared.back().parameters;
-      for (const ask::Parameter& row : rows) {
-        if (is_at(row.doors, ask::Door::kProgram)) declare(*sub, row, rows, *context.reading);
-      }
-    }
-    declare_common(*sub, context);
+    inside_->declared.push_back(command.declare(context));
+    declare(*sub, inside_->declared.back().parameters, context);
   }
 }
 

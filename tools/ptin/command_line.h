@@ -33,6 +33,9 @@ struct OptionFacts {
     return names.front();
   }
 };
+/// Puts the words behind a subcommand that has these parameters where its rows say.
+/// @throws Error invalid_argument  they mean nothing
+void read_words(const ask::Parameters& rows, const std::vector<std::string>& words);
 /// One line about the program.
 [[nodiscard]] const char* program_summary() noexcept;
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "storage/index_shape.h"
 #include "tools/error_status.h"
@@ -62,7 +64,7 @@ nlohmann::json tree_json(const StoreFile& store) {
 nlohmann::json errors_json(const StoreFile& store, const char* key) {
   nlohmann::json rows = nlohmann::json::array();
   for (const double share : kQuantiles) {
-    rows.push_back({{"share", share}, {key, number_or_null(error_quantile(store, share))}});
+    rows.push_back({{"share", share}, {key, error_quantile(store, share)}});
   }
   return rows;
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
@@ -32,6 +33,7 @@ namespace {
 struct IsolineOptions {
   TerrainOptions terrain;
   ask::IsolineQuestion question;
+  AnswerBy by = AnswerBy::kStars;
   bool z = false;
   bool polygons = false;
   int threads = 0;
@@ -93,7 +95,7 @@ void report(const IsolineOptions& options, const Isolines& lines,
 
 int run_lines(const IsolineOptions& options, const IsolineRequest& request,
               const AskedTerrain& asked, const Context& context) {
-  const Isolines lines = asked.terrain.isolines(request);
+  const Isolines lines = asked.terrain.isolines(request, options.by);
   const IndexLevels index{options.question.levels.interval.value_or(0.0),
                           options.question.levels.base};
   IsolineLayer layer({options.out.output, options.out.overwrite, options.z, false, asked.crs, index,
@@ -265,6 +267,7 @@ Declared declare_isoline(Context& context) {
               "Folder for temporary files: lines that do not fit in --memory (default: OUT's "
               "folder), --index spatialindex (default: beside FILE)");
   ask::add_isolines(rows, options->question);
+  rows.push_back(ask::by_row(options->by));
   rows.add("3d", &options->z, "", "Points carry the height of their line");
   rows.add("polygons", &options->polygons, "",
            "Polygons between the levels, with elev_min and elev_max, instead of "

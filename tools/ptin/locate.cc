@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
@@ -31,6 +32,7 @@ struct LocateOptions {
   std::string points;
   InputChoice choice;
   LocateRequest request;
+  AnswerBy by = AnswerBy::kStars;
   std::optional<std::uint64_t> memory;
   OutputOptions answer;
 };
@@ -99,7 +101,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   warn_of_empty_input(asked.all.empty(), options.points, "point", context);
   LocateRequest request = options.request;
   request.limits = limits_of(options.memory, context);
-  const LocateResult result = terrain.locate(asked.all, request);
+  const LocateResult result = terrain.locate(asked.all, request, options.by);
   warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   const Located located{asked, result, terrain.store()};
   if (form == AnswerForm::kLayer) write_layer(options.answer, located, crs);
@@ -129,6 +131,7 @@ Declared declare_locate(Context& context) {
            "terrain's CRS)");
   add_input_choice(rows, options->choice, "points", "x, y");
   ask::add_locate(rows, options->request);
+  rows.push_back(ask::by_row(options->by));
   rows.push_back(ask::memory_row(options->memory));
   add_answer_output(rows, options->answer);
   declared.run = [options, &context] { return run_locate(*options, context); };

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/output/file_name.h"
 
 namespace ptin::tools {
@@ -13,7 +14,7 @@ namespace {
 /// How many times smaller a model is.
 double reduction_of(const std::string& text) {
   const std::optional<double> number =
-      ask::number_in(text.starts_with("1:") ? text.substr(2) : text);
+      parse_number<double>(ask::trimmed(text.starts_with("1:") ? text.substr(2) : text));
   if (number && ask::kPositive.holds(*number)) return *number;
   refuse("\"" + text + "\" is no scale; write it as 1:25000, or as 25000");
 }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/parts_plan.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/build_parts.h"
 #include "engine/error.h"
 #include "tools/output/output_file.h"
-#include "tools/ptin/query_options.h"
+#include "tools/ptin/command_line.h"
 
 namespace ptin::tools {
 
@@ -49,18 +47,10 @@ PartsPlan read_parts_plan(const std::string& path) {
   try {
     plan.folder = json.at("folder").get<std::string>();
     plan.note = json.at("note").dump();
-    std::vector<std::string> arguments = json.at("arguments").get<std::vector<std::string>>();
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    CLI::App app;
-    bool ignored = false;
-    app.add_flag("-q,--quiet", ignored);
-    app.add_flag("--json", ignored);
-    declare_build_options(app, plan.command);
-    app.parse(arguments);
-    complete_options(plan.command);
+    read_words(build_rows(plan.command), json.at("arguments").get<std::vector<std::string>>());
   } catch (const nlohmann::json::exception&) {
     refuse_plan("the plan is damaged");
-  } catch (const CLI::ParseError&) {
+  } catch (const Error&) {
     refuse_plan("the plan is damaged");
   }
   return plan;

@@ -2,7 +2,6 @@
 #include "tools/ptin/point_input.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -11,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <system_error>
 
 #include <ogrsf_frmts.h>
 
@@ -20,6 +18,7 @@
 #include "engine/construct/read/text_rows.h"
 #include "engine/construct/read/text_table.h"
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/output/file_name.h"
 #include "tools/region/vector_input.h"
 
@@ -40,16 +39,8 @@ bool is_text(const std::string& path, const InputChoice& choice) {
                                   point_format_of(path, {}) == PointFormat::kText);
 }
 
-std::optional<double> number_of(std::string_view field) {
-  if (field.starts_with('+') && !field.starts_with("+-")) field.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, fault] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (fault != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
-
 double number_in(const TextRows& rows, std::size_t role) {
-  const std::optional<double> value = number_of(rows.field(role));
+  const std::optional<double> value = parse_number<double>(rows.field(role));
   if (!value) rows.refuse_no_number(role);
   if (!std::isfinite(*value)) rows.refuse_field(role, "is not finite");
   return *value;

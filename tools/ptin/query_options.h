@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/memory_units.h"
 #include "engine/query/terrain.h"
 #include "tools/ask/answer_facts.h"
 #include "tools/ask/groups.h"
@@ -80,7 +81,7 @@ void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
 /// The bytes of --memory. Without it: `otherwise`, or three quarters of what the process is allowed
 /// where that is less.
 [[nodiscard]] std::uint64_t memory_limit_of(std::optional<std::uint64_t> memory,
-                                            std::uint64_t otherwise = std::uint64_t{4} << 30);
+                                            std::uint64_t otherwise = kMemoryOfQuestion);
 /// Memory as memory_limit_of(), and the program's stop token.
 [[nodiscard]] QueryLimits limits_of(std::optional<std::uint64_t> memory, const Context& context);
 

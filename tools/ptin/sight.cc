@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
@@ -37,6 +38,7 @@ struct SightOptions {
   std::string pairs;
   InputChoice choice;
   ask::SightQuestion question;
+  AnswerBy by = AnswerBy::kStars;
   std::optional<std::uint64_t> memory;
   OutputOptions answer;
 };
@@ -162,7 +164,8 @@ int run_sight(const SightOptions& options, const Context& context) {
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
   const std::string unit = unit_of_ground(crs);
-  SightSolver solver = terrain.sight_lines(request, ask::coarse_records_for(asked.all.size()));
+  SightSolver solver =
+      terrain.sight_lines(request, ask::coarse_records_for(asked.all.size()), options.by);
   for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
@@ -202,6 +205,7 @@ Declared declare_sight(Context& context) {
            "heights at their ends");
   add_input_choice(rows, options->choice, "pairs", "x1, y1, h1, x2, y2, h2");
   ask::add_sight(rows, options->question);
+  rows.push_back(ask::by_row(options->by));
   rows.push_back(ask::memory_row(options->memory));
   add_answer_output(rows, options->answer, {.plot = true});
   declared.run = [options, &context] { return run_sight(*options, context); };

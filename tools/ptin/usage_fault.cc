@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -131,44 +130,12 @@ std::string too_many_words(const UsageOf& usage, const std::string& message,
          " and options; what has blanks in it wants quotes";
 }
 
-std::string no_number(const std::string& rest) {
-  const std::size_t sign = rest.find(" = ");
-  const std::string name = rest.substr(0, sign), value = rest.substr(sign + 3);
-  char* end = nullptr;
-  std::strtod(value.c_str(), &end);
-  const bool is_number = end != value.c_str() && *end == '\0';
-  return name + ": " + value +
-         (is_number ? " is no whole number that it can take" : " is no number");
-}
-
-/// "--by: x not in {stars,splits}".
-std::string none_of(const std::string& message) {
-  const std::size_t begin = message.find(" not in {");
-  std::string allowed = message.substr(begin + 9);
-  allowed.erase(allowed.find_last_of('}'));
-  std::vector<std::string> names;
-  for (std::size_t at = 0; at <= allowed.size();) {
-    const std::size_t end = std::min(allowed.find(',', at), allowed.size());
-    names.push_back(allowed.substr(at, end - at));
-    at = end + 1;
-  }
-  const std::string before = message.substr(0, begin);
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  const std::size_t colon = before.find(": ");
-  const std::string word = colon == std::string::npos ? "" : before.substr(colon + 2);
-  return before + " is none of " + list + did_you_mean(nearest_name(word, names));
-}
-
 /// A message of CLI11's in our words; those that are sentences stay as they are.
 std::string in_our_words(const UsageOf& usage, const std::string& message,
                          const std::vector<std::string>& extra) {
-  constexpr std::string_view kNoConversion = "Could not convert: ";
-  if (message.starts_with(kNoConversion)) return no_number(message.substr(kNoConversion.size()));
   if (message.find(" not expected: ") != std::string::npos) {
     return too_many_words(usage, message, extra);
   }
-  if (message.find(" not in {") != std::string::npos) return none_of(message);
   const OptionFacts* const option = option_in(usage, message);
   const bool is_count = message.find(" required ") != std::string::npos;
   if (option != nullptr && is_count) return wrong_count(*option);

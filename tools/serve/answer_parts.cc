@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/crs/border_move.h"
+#include "engine/number.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
 
@@ -48,7 +49,7 @@ Liking named_liking_of(std::string_view accept, std::string_view media) {
     while (!range.empty()) {
       const std::string_view parameter = next_part(range, ';');
       if (parameter.starts_with("q="))
-        liking.quality = ask::number_in(parameter.substr(2)).value_or(0.0);
+        liking.quality = parse_number<double>(parameter.substr(2)).value_or(0.0);
     }
   }
   return liking;

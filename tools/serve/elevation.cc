@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/number.h"
 #include "tools/ask/locate.h"
 #include "tools/facts/human.h"
 #include "tools/http/problem.h"
@@ -73,7 +74,7 @@ ask::Parameters parameters_of(ElevationQuestion& question) {
 }
 
 std::optional<double> finite_in(std::string_view text) {
-  const std::optional<double> number = ask::number_in(text);
+  const std::optional<double> number = parse_number<double>(ask::trimmed(text));
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
