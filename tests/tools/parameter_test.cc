@@ -3,6 +3,7 @@
 // A question is written once: a row that is added to it appears wherever questions are read, and a
 // value that is none is refused in the same words at both doors.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -242,42 +243,90 @@ struct Hill {
   bool is_bald;
 };
 
-const ask::Fields<Hill>& hill_fields() {
+ask::Fields<Hill> hill_fields() {
   using ask::As;
   using ask::Door;
-  using ask::Json;
-  static const ask::Fields<Hill> fields = {
-      {{"name", "string", "", "How it is called."}, [](const Hill& h) -> Json { return h.name; }},
-      {{"top.height", "number or null", "height's unit", "Of its top."},
-       [](const Hill& h) -> Json { return h.height; }},
-      {{"bald", "boolean", "", "Nothing grows on it.", Door::kProgram},
-       [](const Hill& h) -> Json { return h.is_bald ? Json(true) : ask::kLeftOut; }},
-      {{"note", "string", "", "For programs.", Door::kBoth, As::kObject},
-       [](const Hill&) -> Json { return "-"; }}};
+  ask::Fields<Hill> fields;
+  fields.add("name", "string", "", "How it is called.", &Hill::name);
+  fields.add("top.height", "number or null", "height's unit", "Of its top.", &Hill::height);
+  fields.add(
+      "bald", "boolean", "", "Nothing grows on it.",
+      [](const Hill& h) { return h.is_bald ? ask::Json(true) : ask::kLeftOut; }, Door::kProgram);
+  fields.add(
+      "note", "string", "", "For programs.", [](const Hill&) { return "-"; }, As::kObject);
   return fields;
 }
 
 TEST(Field, StandsInEveryFormatOfItsDoor) {
-  const Hill hill{12.5, "Old, Man", true}, other{std::nan(""), "x", false};
+  const std::vector<Hill> hills = {{12.5, "Old, Man", true}, {std::nan(""), "x", false}};
   using ask::As;
   using ask::Door;
-  EXPECT_EQ(ask::object_of(hill_fields(), hill, Door::kProgram).dump(),
+  const auto object = [&](const Hill& hill, Door door) {
+    return ask::object_of(hill_fields().told(door, As::kObject), hill).dump();
+  };
+  EXPECT_EQ(object(hills[0], Door::kProgram),
             R"({"name":"Old, Man","top":{"height":12.5},"bald":true,"note":"-"})");
-  EXPECT_EQ(ask::object_of(hill_fields(), other, Door::kProgram).dump(),
-            R"({"name":"x","top":{"height":null},"note":"-"})");
-  EXPECT_EQ(ask::object_of(hill_fields(), hill, Door::kService).dump(),
+  EXPECT_EQ(object(hills[1], Door::kProgram), R"({"name":"x","top":{"height":null},"note":"-"})");
+  EXPECT_EQ(object(hills[0], Door::kService),
             R"({"name":"Old, Man","top":{"height":12.5},"note":"-"})");
-  const auto table = ask::columns_of(hill_fields(), Door::kProgram, As::kTableRow, {"top.height"});
   ask::LongText csv;
-  ask::add_csv_heading(csv, table);
-  for (const Hill& h : {hill, other}) ask::add_csv_row(csv, table, h);
+  ask::add_csv(csv, hill_fields().told(Door::kProgram, As::kTableRow, {"top_height"}), hills.size(),
+               [&](std::size_t i) { return hills[i]; });
   EXPECT_EQ(csv.take(), "top_height,name,bald\n12.5,\"Old, Man\",1\n,x,\n");
-  const auto feature = ask::columns_of(hill_fields(), Door::kService, As::kFeature);
+  const auto feature = hill_fields().told(Door::kService, As::kFeature);
   const auto layer = ask::layer_fields_of(feature);
   ASSERT_EQ(layer.size(), 2U);
   EXPECT_EQ(layer[1].name, "top_height");
   EXPECT_EQ(layer[1].type, VectorFile::FieldType::kReal);
-  EXPECT_EQ(std::get<std::string>(ask::layer_values_of(feature, hill)[0]), "Old, Man");
+  EXPECT_EQ(std::get<std::string>(ask::layer_values_of(feature, hills[0])[0]), "Old, Man");
+}
+
+/// A part of a row is an object, which may be absent; several are an array of objects.
+TEST(Field, HasParts) {
+  struct Range {
+    std::optional<Hill> highest;
+    std::vector<Hill> all;
+  };
+  ask::Fields<Hill> hill;
+  hill.add("height", "number", "", "", &Hill::height);
+  ask::Fields<Range> fields;
+  fields.add_object("highest", "object or null", "", hill, &Range::highest);
+  fields.add_array("all", "", hill, &Range::all);
+  const auto text = [&](const Range& range) {
+    return ask::object_of(fields.told(ask::Door::kProgram, ask::As::kObject), range).dump();
+  };
+  EXPECT_EQ(text({}), R"({"highest":null,"all":[]})");
+  EXPECT_EQ(text({Hill{3, "", false}, {{1, "", false}, {3, "", false}}}),
+            R"({"highest":{"height":3.0},"all":[{"height":1.0},{"height":3.0}]})");
+}
+
+TEST(Field, IsInTheSchemaOfTheAnswer) {
+  constexpr std::array kFormats = {ask::Format{"json", "application/json"},
+                                   ask::Format{"geojson", "application/geo+json"}};
+  serve::Endpoint endpoint{"/hills",
+                           "hills",
+                           false,
+                           "Hills",
+                           {},
+                           kFormats,
+                           http::Lane::kPoint,
+                           serve::Reserves::kNothing,
+                           nullptr};
+  endpoint.members = documented(hill_fields(), ask::Door::kService, ask::As::kObject, "all[].");
+  endpoint.properties = documented(hill_fields(), ask::Door::kService, ask::As::kFeature);
+  const std::vector<serve::Endpoint> all = {endpoint};
+  const auto paths = serve::openapi(all, {})["paths"];
+  const auto content = paths["/hills"]["get"]["responses"]["200"]["content"];
+  const auto object = content["application/json"]["schema"]["properties"];
+  const auto hill = object["all"]["items"]["properties"];
+  EXPECT_EQ(hill["name"]["type"], "string");
+  EXPECT_EQ(hill["top"]["properties"]["height"]["nullable"], true);
+  EXPECT_FALSE(hill.contains("bald"));
+  EXPECT_EQ(object["certified_error"]["type"], "number");
+  const auto collection = content["application/geo+json"]["schema"]["properties"];
+  EXPECT_TRUE(collection["ptin:certainty"]["properties"].contains("exact"));
+  EXPECT_TRUE(
+      collection["features"]["items"]["properties"]["properties"]["properties"].contains("name"));
 }
 
 }  // namespace

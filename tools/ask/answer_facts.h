@@ -5,7 +5,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
@@ -44,12 +43,10 @@ template <typename Result>
           &result.cost};
 }
 
-/// Adds them to an answer.
-void put(Json& answer, const AnswerFacts& facts, Door door);
+/// The fields of all answers.
+[[nodiscard]] Fields<AnswerFacts> answer_fields();
 /// The cost of an answer, and the names of a terrain's units, by themselves.
 [[nodiscard]] Json cost_json(const QueryCost& cost);
 [[nodiscard]] Json units_json(const CrsFacts& crs);
-/// The fields, for documents.
-[[nodiscard]] std::vector<NamedField> answer_fields();
 
 }  // namespace ptin::ask

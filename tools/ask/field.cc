@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ask/field.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tools/formats/csv_text.h"
@@ -12,12 +11,6 @@ Json& member_of(Json& object, std::string_view name) {
   const std::size_t point = name.find('.');
   Json& member = object[std::string(name.substr(0, point))];
   return point == std::string_view::npos ? member : member_of(member, name.substr(point + 1));
-}
-
-std::string heading_of(const FieldFacts& facts) {
-  std::string heading(facts.name);
-  std::replace(heading.begin(), heading.end(), '.', '_');
-  return heading;
 }
 
 void add_csv_value(LongText& text, const Json& value) {
@@ -34,19 +27,14 @@ void add_csv_value(LongText& text, const Json& value) {
   }
 }
 
-void add_members(LongText& text, const Json& object) {
-  for (const auto& [name, value] : object.items()) {
-    text.add(",\"").add(name).add("\":").json(value);
-  }
-}
-
 tools::VectorFile::Field layer_field_of(const FieldFacts& facts) {
   using Type = tools::VectorFile::FieldType;
   const Type type = facts.type.starts_with("number")    ? Type::kReal
                     : facts.type.starts_with("integer") ? Type::kInteger
                     : facts.type.starts_with("boolean") ? Type::kBoolean
+                    : facts.type.starts_with("flag")    ? Type::kFlag
                                                         : Type::kText;
-  return {heading_of(facts), type};
+  return {facts.heading, type};
 }
 
 tools::VectorFile::Value layer_value_of(const Json& value) {

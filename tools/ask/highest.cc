@@ -4,7 +4,33 @@
 #include <cstdint>
 #include <limits>
 
+#include "tools/facts/answers.h"
+
 namespace ptin::ask {
+
+namespace {
+
+Fields<HeightAt> vertex_fields() {
+  Fields<HeightAt> fields;
+  fields.add("x", "number", kMapUnit, "Of the vertex, or the point.",
+             [](const HeightAt& v) { return v.position.x; });
+  fields.add("y", "number", kMapUnit, "Of the vertex, or the point.",
+             [](const HeightAt& v) { return v.position.y; });
+  fields.add("height", "number", kHeightUnit, "Of the vertex, or the point.", &HeightAt::height);
+  return fields;
+}
+
+/// What is told of the point beside its place.
+Fields<HighestResult> point_fields() {
+  Fields<HighestResult> fields;
+  fields.add("height_min", "number or null", kHeightUnit, "The source's highest is no lower.",
+             &HighestResult::height_min);
+  fields.add("height_max", "number or null", kHeightUnit, "The source's highest is no higher.",
+             &HighestResult::height_max);
+  return fields;
+}
+
+}  // namespace
 
 void add_highest(Parameters& rows, HighestQuestion& question) {
   HighestRequest& request = question.request;
@@ -20,6 +46,56 @@ void add_highest(Parameters& rows, HighestQuestion& question) {
   add_detail(rows, request.detail, "; the height comes with an interval",
              "The highest of the TIN of the terrain's N most important vertices, instead of an "
              "error; its height comes with an interval");
+}
+
+Fields<HighestAnswer> highest_fields() {
+  Fields<HighestResult> point;
+  point.add_parts("", vertex_fields(), &HighestResult::point);
+  point.add_parts("", point_fields(), [](const HighestResult& r) { return &r; });
+  point.add("at_vertex", "boolean", "", "False: on the region's border.",
+            &HighestResult::at_vertex);
+
+  using Row = HighestAnswer;
+  Fields<Row> fields;
+  fields.add("state", "string", "",
+             "Unless it is `surface` there is no point: the region lies outside of the hull, or "
+             "holds nothing but voids.",
+             [](const Row& a) { return tools::name_of(a.result->state); });
+  const std::size_t first_of_program = fields.size();
+  fields.add("lowest", "boolean", "",
+             "The lowest point was asked for; \"highest\" below then means that.", &Row::lowest);
+  fields.add_object(
+      "point", "object or null",
+      "The highest point of the surface in the region: one of several, where there are several.",
+      point,
+      [](const Row& a) { return a.result->state == PointState::kSurface ? a.result : nullptr; });
+  fields.add_array("vertices",
+                   "The highest vertices in the region that touch the surface, falling, equal ones "
+                   "from south to north and west to east; at most as many as `-k` says.",
+                   vertex_fields(), [](const Row& a) { return &a.result->vertices; });
+  fields.tell_at(Door::kProgram, first_of_program);
+  return fields;
+}
+
+Fields<HighestPlace> highest_place_fields() {
+  Fields<HighestPlace> fields;
+  fields.add("rank", "integer", "", "1: the point; then the vertices.", &HighestPlace::rank);
+  fields.add("at_vertex", "boolean", "", "False: on the region's border.",
+             &HighestPlace::at_vertex);
+  fields.add_parts("", point_fields(), &HighestPlace::result);
+  fields.add("height", "number", kHeightUnit, "Of the place.",
+             [](const HighestPlace& p) { return p.at.height; });
+  return fields;
+}
+
+std::vector<HighestPlace> places_of(const HighestResult& result) {
+  std::vector<HighestPlace> places;
+  if (result.state != PointState::kSurface) return places;
+  places.push_back({result.point, 1, result.at_vertex, &result});
+  for (std::size_t i = result.at_vertex ? 1 : 0; i < result.vertices.size(); ++i) {
+    places.push_back({result.vertices[i], places.size() + 1});
+  }
+  return places;
 }
 
 }  // namespace ptin::ask

@@ -3,6 +3,12 @@
 
 namespace ptin::ask {
 
+namespace {
+
+constexpr std::string_view kOfLevels = "Ascending, each once.";
+
+}  // namespace
+
 void add_isolines(Parameters& rows, IsolineQuestion& question) {
   IsolineRequest& request = question.request;
   add_levels(rows, question.levels, "Heights of the lines, instead of an interval",
@@ -16,6 +22,58 @@ void add_isolines(Parameters& rows, IsolineQuestion& question) {
            "polygons")
       .with_default()
       .at(Door::kProgram);
+}
+
+Fields<IsolineRow> isoline_row_fields() {
+  const auto of_step = [](auto member) {
+    return [member](const IsolineRow& r) { return r.step ? Json(r.step->*member) : kLeftOut; };
+  };
+  Fields<IsolineRow> fields;
+  fields.add("ID", "integer", "", "From 0.", &IsolineRow::id, Door::kProgram);
+  fields.add("elev", "number", kHeightUnit, "Of the line.", &IsolineRow::elevation);
+  fields.add("ring", "boolean", "", "The line is closed.", &IsolineRow::ring, Door::kService);
+  fields.add("step", "integer", "", "From 0.", of_step(&IsolineStep::step), Door::kProgram);
+  // Splits may exceed 32 bits, and integers of a shapefile do not.
+  fields.add("splits", "number", "", "By then.", of_step(&IsolineStep::splits), Door::kProgram);
+  fields.add("error", "number", kHeightUnit, "Certified by then.",
+             of_step(&IsolineStep::certified_error), Door::kProgram);
+  return fields;
+}
+
+Fields<BandRow> band_row_fields() {
+  Fields<BandRow> fields;
+  fields.add("ID", "integer", "", "From 0.", &BandRow::id);
+  fields.add("elev_min", "number", kHeightUnit, "Of the band.", &BandRow::low);
+  fields.add("elev_max", "number", kHeightUnit, "Of the band.", &BandRow::high);
+  return fields;
+}
+
+Fields<IsolineAnswer> isoline_fields() {
+  Fields<TraceCounts> crossed;
+  crossed.add("triangles", "integer", "", "Crossed by one level at least.",
+              &TraceCounts::triangles);
+  crossed.add("vertices", "integer", "", "Of those triangles.", &TraceCounts::vertices);
+  crossed.add("segments", "integer", "", "One a triangle and level.", &TraceCounts::segments);
+  Fields<IsolineAnswer> fields;
+  fields.add("levels", "array of numbers", kHeightUnit, kOfLevels,
+             [](const IsolineAnswer& a) { return a.isolines->levels(); });
+  fields.add("lines", "integer", "", "Written.", &IsolineAnswer::lines);
+  fields.add("rings", "integer", "", "Of these, closed ones.", &IsolineAnswer::rings);
+  fields.add("points", "integer", "", "Of all lines.", &IsolineAnswer::points);
+  fields.add_object("crossed", "object", "What the levels cross.", crossed,
+                    [](const IsolineAnswer& a) { return &a.isolines->crossed; });
+  fields.add("tiles", "integer", "", "In which the terrain was processed.",
+             [](const IsolineAnswer& a) { return a.isolines->tiles; });
+  return fields;
+}
+
+Fields<BandAnswer> band_fields() {
+  Fields<BandAnswer> fields;
+  fields.add("levels", "array of numbers", kHeightUnit, kOfLevels, &BandAnswer::levels);
+  fields.add("features", "integer", "", "Bands that have an area, one feature each.",
+             &BandAnswer::features);
+  fields.add("polygons", "integer", "", "Of all bands.", &BandAnswer::polygons);
+  return fields;
 }
 
 }  // namespace ptin::ask

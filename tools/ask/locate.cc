@@ -33,31 +33,32 @@ LocatedRow::LocatedRow(const MapPoint& position, const LocatedPoint& located, co
   }
 }
 
-const Fields<LocatedRow>& located_fields() {
-  static const Fields<LocatedRow> fields = {
-      {{"x", "number", "map unit", "As asked.", Door::kBoth, As::kNoFeature},
-       [](const LocatedRow& r) -> Json { return r.at.x; }},
-      {{"y", "number", "map unit", "As asked.", Door::kBoth, As::kNoFeature},
-       [](const LocatedRow& r) -> Json { return r.at.y; }},
-      {{"state", "string", "", "What is there."},
-       [](const LocatedRow& r) -> Json { return tools::name_of(r.point.state); }},
-      {{"height", "number or null", "height's unit",
-        "Of the TIN that was asked; null where it has no surface."},
-       [](const LocatedRow& r) -> Json { return r.point.height; }},
-      {{"height_min", "number or null", "height's unit",
-        "The exact height is no lower, if the exact TIN is surface there."},
-       [](const LocatedRow& r) -> Json { return r.point.height_min; }},
-      {{"height_max", "number or null", "height's unit",
-        "The exact height is no higher, if the exact TIN is surface there."},
-       [](const LocatedRow& r) -> Json { return r.point.height_max; }},
-      {{"id", "string", "", "Its column or attribute (`--id`); left out where the input has none.",
-        Door::kProgram},
-       [](const LocatedRow& r) -> Json { return r.id == nullptr ? kLeftOut : Json(*r.id); }},
-      {{"triangle", "array or null", "",
-        "Its corners, counter-clockwise from the southernmost, as `[x, y, height]`; no height: "
-        "null.",
-        Door::kBoth, As::kObject},
-       triangle_json}};
+Fields<LocatedRow> located_fields() {
+  using Row = LocatedRow;
+  Fields<Row> fields;
+  fields.add(
+      "x", "number", kMapUnit, "As asked.", [](const Row& r) { return r.at.x; }, As::kNoFeature);
+  fields.add(
+      "y", "number", kMapUnit, "As asked.", [](const Row& r) { return r.at.y; }, As::kNoFeature);
+  fields.add("state", "string", "", "What is there.",
+             [](const Row& r) { return tools::name_of(r.point.state); });
+  fields.add("height", "number or null", kHeightUnit,
+             "Of the TIN that was asked; null where it has no surface.",
+             [](const Row& r) { return r.point.height; });
+  fields.add("height_min", "number or null", kHeightUnit,
+             "The exact height is no lower, if the exact TIN is surface there.",
+             [](const Row& r) { return r.point.height_min; });
+  fields.add("height_max", "number or null", kHeightUnit,
+             "The exact height is no higher, if the exact TIN is surface there.",
+             [](const Row& r) { return r.point.height_max; });
+  fields.add("id", "string", "",
+             "Its column or attribute (`--id`); left out where the input has none.", &Row::id,
+             Door::kProgram);
+  fields.add(
+      "triangle", "array or null", "",
+      "Its corners, counter-clockwise from the southernmost, as `[x, y, height]`; no height: "
+      "null.",
+      triangle_json, As::kObject);
   return fields;
 }
 

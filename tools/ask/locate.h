@@ -24,6 +24,6 @@ struct LocatedRow {
   const std::string* id = nullptr;  ///< Null: the input has none.
 };
 /// What is told of a located point, wherever one is told.
-[[nodiscard]] const Fields<LocatedRow>& located_fields();
+[[nodiscard]] Fields<LocatedRow> located_fields();
 
 }  // namespace ptin::ask

@@ -27,7 +27,7 @@ struct ProfileRow {
   bool has_stations = true;         ///< Some points are stations.
   const std::string* id = nullptr;  ///< Of its line; null: the input has none.
 };
-[[nodiscard]] const Fields<ProfileRow>& profile_fields();
+[[nodiscard]] Fields<ProfileRow> profile_fields();
 
 /// A line of a profile as it is told.
 struct ProfileLineRow {
@@ -35,7 +35,7 @@ struct ProfileLineRow {
   const ProfileResult& profile;
   const std::string* id = nullptr;
 };
-[[nodiscard]] const Fields<ProfileLineRow>& profile_line_fields();
+[[nodiscard]] Fields<ProfileLineRow> profile_line_fields();
 /// The stretches of one line that have heights: calls `take` with the first and the last place of each.
 template <typename Take>
 void for_each_stretch(std::span<const ProfilePoint> points, const Take& take) {
@@ -59,6 +59,6 @@ struct ProfileAnswer {
   double bent_at_most =
       0.0;  ///< How far a side of the client's CRS is from the line walked, map units.
 };
-[[nodiscard]] const Fields<ProfileAnswer>& profile_answer_fields();
+[[nodiscard]] Fields<ProfileAnswer> profile_answer_fields();
 
 }  // namespace ptin::ask

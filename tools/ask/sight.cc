@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -46,40 +47,43 @@ double hertz_of(const std::string& text) {
   return hertz;
 }
 
-using Place = std::optional<SightPoint> SightRow::*;
-template <Place place>
-Json object_at(const SightRow& row) {
-  return row.*place ? Json::object() : Json();
-}
-template <Place place>
-Json x_at(const SightRow& row) {
-  return row.*place ? Json((row.*place)->position.x) : kLeftOut;
-}
-template <Place place>
-Json y_at(const SightRow& row) {
-  return row.*place ? Json((row.*place)->position.y) : kLeftOut;
-}
-template <Place place>
-Json distance_at(const SightRow& row) {
-  return row.*place ? Json((row.*place)->distance) : kLeftOut;
-}
-template <Place place>
-Json height_at(const SightRow& row) {
-  return row.*place ? Json((row.*place)->height) : kLeftOut;
-}
-
-/// Least and largest clearance: objects tell them of a place alone.
-Json clearance_min(const SightRow& row) {
-  return row.clearance ? Json(row.result.clearance_min) : kLeftOut;
-}
-Json clearance_max(const SightRow& row) {
-  return row.clearance ? Json(row.result.clearance_max) : kLeftOut;
+/// Adds the fields of a place on the line.
+/// @param tables  Those of them that tables and layers have.
+void add_place(Fields<SightRow>& fields, const std::string& name,
+               std::optional<SightPoint> SightRow::*place,
+               std::initializer_list<std::string_view> tables) {
+  const auto add = [&](const std::string& part, std::string_view unit, std::string_view meaning,
+                       auto value) {
+    const bool is_told = std::find(tables.begin(), tables.end(), part) != tables.end();
+    fields.add(
+        name + "." + part, "number", unit, meaning,
+        [place, value](const SightRow& row) {
+          return row.*place ? Json(value(*(row.*place))) : kLeftOut;
+        },
+        is_told ? As::kAll : As::kObject);
+  };
+  add("x", kMapUnit, "Of the place.", [](const SightPoint& p) { return p.position.x; });
+  add("y", kMapUnit, "Of the place.", [](const SightPoint& p) { return p.position.y; });
+  add("distance", kHeightUnit, "Over ground, from the first end.",
+      [](const SightPoint& p) { return p.distance; });
+  add("height", kHeightUnit, "Of the line there.", [](const SightPoint& p) { return p.height; });
 }
 
-/// Heights above ground that an end does not have there have no verdict.
-Json verdict_of(const SightRow& row) {
-  const bool is_defined = row.result.verdict != SightVerdict::kUndefined;
-  return is_defined ? Json(tools::name_of(row.result.verdict)) : Json();
+/// Adds a bound of the clearance, which objects tell of a place alone.
+void add_clearance(Fields<SightRow>& fields, const std::string& name, std::string_view meaning,
+                   double SightResult::*bound) {
+  fields.add(
+      name, "number or null", kHeightUnit, meaning,
+      [bound](const SightRow& r) { return r.clearance ? Json(r.result.*bound) : kLeftOut; },
+      As::kObject);
+  fields.add(
+      name, "number", kHeightUnit, "The same.",
+      [bound](const SightRow& r) { return r.result.*bound; }, As::kNoObject);
+}
+
+/// An object where there is a place, and null elsewhere.
+auto object_at(std::optional<SightPoint> SightRow::*place) {
+  return [place](const SightRow& row) { return row.*place ? Json(Json::object()) : Json(); };
 }
 
 }  // namespace
@@ -130,84 +134,65 @@ SightRow::SightRow(const SightResult& line,
   }
 }
 
-const Fields<SightRow>& sight_fields() {
-  constexpr Place kHit = &SightRow::obstruction, kNear = &SightRow::clearance;
-  constexpr Place kZone = &SightRow::fresnel;
-  constexpr Door kBoth = Door::kBoth;
-  static const Fields<SightRow> fields = {
-      {{"verdict", "string or null", "",
-        "`visible`, `hidden` or `undecided`; null: heights are above ground, and an end has none "
-        "below it.",
-        kBoth, As::kObject},
-       verdict_of},
-      {{"verdict", "string", "", "The same; `undefined` in the place of null.", kBoth,
-        As::kNoObject},
-       [](const SightRow& r) -> Json { return tools::name_of(r.result.verdict); }},
-      {{"ends", "array of strings", "", "The state of the ground below each end.", kBoth,
-        As::kObject},
-       [](const SightRow& r) -> Json {
-         return Json::array({tools::name_of(r.result.state_a), tools::name_of(r.result.state_b)});
-       }},
-      {{"length", "number", "height's unit", "Of the line over ground."},
-       [](const SightRow& r) -> Json { return r.result.length; }},
-      {{"obstruction", "object or null", "",
-        "Where the line first goes below ground; null unless hidden.", kBoth, As::kObject},
-       object_at<kHit>},
-      {{"obstruction.x", "number", "map unit", "Of that place."}, x_at<kHit>},
-      {{"obstruction.y", "number", "map unit", "Of that place."}, y_at<kHit>},
-      {{"obstruction.distance", "number", "height's unit", "Over ground, from the first end."},
-       distance_at<kHit>},
-      {{"obstruction.height", "number", "height's unit", "Of the line there.", kBoth, As::kObject},
-       height_at<kHit>},
-      {{"clearance", "object or null", "",
-        "The least height of the line above ground, ends included; null where none is known.",
-        kBoth, As::kObject},
-       object_at<kNear>},
-      {{"clearance.min", "number or null", "height's unit",
-        "The exact clearance is no less; null: without limit.", kBoth, As::kObject},
-       clearance_min},
-      {{"clearance.max", "number or null", "height's unit",
-        "The exact clearance is no more; null: without limit.", kBoth, As::kObject},
-       clearance_max},
-      {{"clearance.min", "number", "height's unit", "The same.", kBoth, As::kNoObject},
-       [](const SightRow& r) -> Json { return r.result.clearance_min; }},
-      {{"clearance.max", "number", "height's unit", "The same.", kBoth, As::kNoObject},
-       [](const SightRow& r) -> Json { return r.result.clearance_max; }},
-      {{"clearance.x", "number", "map unit", "Of the place.", kBoth, As::kObject}, x_at<kNear>},
-      {{"clearance.y", "number", "map unit", "Of the place.", kBoth, As::kObject}, y_at<kNear>},
-      {{"clearance.distance", "number", "height's unit", "Over ground, from the first end."},
-       distance_at<kNear>},
-      {{"clearance.height", "number", "height's unit", "Of the line there.", kBoth, As::kObject},
-       height_at<kNear>},
-      {{"void_length", "number or null", "height's unit",
-        "Of the line over voids; null where it is not known."},
-       [](const SightRow& r) -> Json { return r.result.void_length; }},
-      {{"fresnel", "object", "",
-        "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
-        "left out.",
-        kBoth, As::kObject},
-       [](const SightRow&) -> Json { return kLeftOut; }},
-      {{"fresnel.ratio", "number or null", "", "That clearance over that radius."},
-       [](const SightRow& r) -> Json {
-         return r.result.fresnel_ratio ? Json(*r.result.fresnel_ratio) : kLeftOut;
-       }},
-      {{"fresnel.x", "number", "map unit", "Of the place."}, x_at<kZone>},
-      {{"fresnel.y", "number", "map unit", "Of the place."}, y_at<kZone>},
-      {{"fresnel.distance", "number", "height's unit", "Over ground, from the first end."},
-       distance_at<kZone>},
-      {{"fresnel.height", "number", "height's unit", "Of the line there."}, height_at<kZone>},
-      {{"certified_deviation", "number or null", "height's unit",
-        "What is not known of the surface where the line is undecided; 0: nothing.", kBoth,
-        As::kObject},
-       [](const SightRow& r) -> Json { return r.result.certified_deviation; }},
-      {{"exact", "boolean", "", "All that is told holds of the source.", kBoth, As::kObject},
-       [](const SightRow& r) -> Json { return r.result.exact; }},
-      {{"cost", "object", "", "What the pair took.", Door::kProgram, As::kObject},
-       [](const SightRow& r) { return cost_json(r.result.cost); }},
-      {{"id", "string", "",
-        "Of each of `pairs`: its column or attribute (`--id`); left out where the input has none.",
-        Door::kProgram},
-       [](const SightRow& r) -> Json { return r.id == nullptr ? kLeftOut : Json(*r.id); }}};
+Fields<SightRow> sight_fields() {
+  using Row = SightRow;
+  Fields<Row> fields;
+  fields.add(
+      "verdict", "string or null", "",
+      "`visible`, `hidden` or `undecided`; null: heights are above ground, and an end has none "
+      "below it.",
+      [](const Row& r) {
+        const bool is_defined = r.result.verdict != SightVerdict::kUndefined;
+        return is_defined ? Json(tools::name_of(r.result.verdict)) : Json();
+      },
+      As::kObject);
+  fields.add(
+      "verdict", "string", "", "The same; `undefined` in the place of null.",
+      [](const Row& r) { return tools::name_of(r.result.verdict); }, As::kNoObject);
+  fields.add(
+      "ends", "array of strings", "", "The state of the ground below each end.",
+      [](const Row& r) {
+        return Json{tools::name_of(r.result.state_a), tools::name_of(r.result.state_b)};
+      },
+      As::kObject);
+  fields.add("length", "number", kHeightUnit, "Of the line over ground.",
+             [](const Row& r) { return r.result.length; });
+  fields.add("obstruction", "object or null", "",
+             "Where the line first goes below ground; null unless hidden.",
+             object_at(&Row::obstruction), As::kObject);
+  add_place(fields, "obstruction", &Row::obstruction, {"x", "y", "distance"});
+  fields.add("clearance", "object or null", "",
+             "The least height of the line above ground, ends included; null where none is known.",
+             object_at(&Row::clearance), As::kObject);
+  add_clearance(fields, "clearance.min", "The exact clearance is no less; null: without limit.",
+                &SightResult::clearance_min);
+  add_clearance(fields, "clearance.max", "The exact clearance is no more; null: without limit.",
+                &SightResult::clearance_max);
+  add_place(fields, "clearance", &Row::clearance, {"distance", "height"});
+  fields.add("void_length", "number or null", kHeightUnit,
+             "Of the line over voids; null where it is not known.",
+             [](const Row& r) { return r.result.void_length; });
+  fields.add(
+      "fresnel", "object", "",
+      "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
+      "left out.",
+      [](const Row&) { return kLeftOut; }, As::kObject);
+  fields.add("fresnel.ratio", "number or null", "", "That clearance over that radius.",
+             [](const Row& r) { return r.result.fresnel_ratio; });
+  add_place(fields, "fresnel", &Row::fresnel, {"x", "y", "distance", "height"});
+  fields.add(
+      "certified_deviation", "number or null", kHeightUnit,
+      "What is not known of the surface where the line is undecided; 0: nothing.",
+      [](const Row& r) { return r.result.certified_deviation; }, As::kObject);
+  fields.add(
+      "exact", "boolean", "", "All that is told holds of the source.",
+      [](const Row& r) { return r.result.exact; }, As::kObject);
+  fields.add("cost", "object", "", "What the pair took.",
+             [](const Row& r) { return cost_json(r.result.cost); }, {Door::kProgram, As::kObject});
+  fields.add("id", "string", "",
+             "Of each of `pairs`: its column or attribute (`--id`); left out where the input has "
+             "none.",
+             &Row::id, Door::kProgram);
   return fields;
 }
 

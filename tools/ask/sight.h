@@ -35,6 +35,6 @@ struct SightRow {
   std::optional<SightPoint> obstruction, clearance, fresnel;
   const std::string* id = nullptr;  ///< Null: the input has none.
 };
-[[nodiscard]] const Fields<SightRow>& sight_fields();
+[[nodiscard]] Fields<SightRow> sight_fields();
 
 }  // namespace ptin::ask

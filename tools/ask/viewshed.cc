@@ -55,4 +55,50 @@ void set_ground(ViewshedRequest& request, const Ground& ground) {
   request.curvature.earth_diameter = ground.earth_diameter;
 }
 
+Fields<ViewshedAnswer> viewshed_fields() {
+  using Row = ViewshedAnswer;
+  using Count = std::uint64_t Viewshed::*;
+  const auto counts_of = [](Count visible, Count hidden, Count undecided) {
+    Fields<Viewshed> counts;
+    counts.add("visible", "integer", "", "For certain.", visible);
+    counts.add("hidden", "integer", "", "For certain.", hidden);
+    counts.add("undecided", "integer", "", "At a level of detail.", undecided);
+    return counts;
+  };
+  const Fields<Viewshed> pixels =
+      counts_of(&Viewshed::visible_pixels, &Viewshed::hidden_pixels, &Viewshed::undecided_pixels);
+  const Fields<Viewshed> vertices = counts_of(
+      &Viewshed::visible_vertices, &Viewshed::hidden_vertices, &Viewshed::undecided_vertices);
+  Fields<Row> fields;
+  fields.add_parts("", vertices, &Row::seen);
+  fields.tell_at(Door::kService, 0);
+  fields.add("eye_height", "number", kHeightUnit, "Of the observer, absolute.",
+             [](const Row& a) { return a.seen->eye_height; });
+  const std::size_t first_of_program = fields.size();
+  fields.add("width", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
+             [](const Row& a) { return a.seen->width; });
+  fields.add("height", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
+             [](const Row& a) { return a.seen->height; });
+  fields.add_object("pixels", "object or null",
+                    "Pixels that are targets; null where the output is a layer.", pixels,
+                    [](const Row& a) { return a.of_pixels ? a.seen : nullptr; });
+  fields.add_object("vertices", "object or null",
+                    "Vertices that are targets; null where the output is a raster.", vertices,
+                    [](const Row& a) { return a.of_pixels ? nullptr : a.seen; });
+  fields.tell_at(Door::kProgram, first_of_program);
+  return fields;
+}
+
+Fields<Viewshed::Target> target_fields() {
+  using Row = Viewshed::Target;
+  constexpr std::string_view kCertain = "The full TIN of the source says the same.";
+  Fields<Row> fields;
+  fields.add("height", "number", kHeightUnit, "Of the vertex.", &Row::height);
+  fields.add("visible", "flag", "", "1: it is.", &Row::visible, Door::kProgram);
+  fields.add("certain", "flag", "", kCertain, &Row::certain, Door::kProgram);
+  fields.add("visible", "boolean", "", "It is.", &Row::visible, Door::kService);
+  fields.add("certain", "boolean", "", kCertain, &Row::certain, Door::kService);
+  return fields;
+}
+
 }  // namespace ptin::ask

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/crs/ground.h"
+#include "tools/ask/field.h"
 #include "tools/ask/groups.h"
 
 namespace ptin::ask {
@@ -18,5 +19,13 @@ struct ViewshedQuestion {
 void add_viewshed(Parameters& rows, ViewshedQuestion& question);
 /// Fills in what the ground tells below the eye, which is set: lengths of map units, and the Earth.
 void set_ground(ViewshedRequest& request, const Ground& ground);
+
+struct ViewshedAnswer {
+  const Viewshed* seen;
+  bool of_pixels = false;  ///< Else of vertices.
+};
+[[nodiscard]] Fields<ViewshedAnswer> viewshed_fields();
+/// A vertex as a feature.
+[[nodiscard]] Fields<Viewshed::Target> target_fields();
 
 }  // namespace ptin::ask

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "tools/formats/vector_file.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {
@@ -35,6 +36,30 @@ enum class AnswerForm : std::uint8_t {
 /// Writes CSV where the form asks for it; nothing for other forms. With `json` stdout is taken.
 /// @throws Error as OutputFile, as write_to_stdout()
 void write_csv(const OutputOptions& options, AnswerForm form, bool json, const std::string& text);
+
+/// Writes rows as a layer.
+/// @param fields  Those of the layer.
+/// @param rows    How many there are. `row_at` and `geometry_at` make one by its number.
+/// @throws Error as VectorFile
+template <typename Row, typename RowAt, typename GeometryAt>
+void write_layer(const OutputOptions& out, VectorFile::Layer layer, const ask::Fields<Row>& fields,
+                 std::size_t rows, const RowAt& row_at, const GeometryAt& geometry_at) {
+  layer.fields = ask::layer_fields_of(fields);
+  VectorFile file(out.output, out.overwrite, layer);
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Row& row = row_at(i);
+    file.add(geometry_at(i), ask::layer_values_of(fields, row));
+  }
+  file.publish();
+}
+/// Rows as CSV.
+template <typename Row, typename RowAt>
+[[nodiscard]] std::string table_of(const ask::Fields<Row>& fields, std::size_t rows,
+                                   const RowAt& row_at) {
+  ask::LongText text;
+  ask::add_csv(text, fields, rows, row_at);
+  return text.take();
+}
 
 /// The name in JSON: null on stdout.
 [[nodiscard]] nlohmann::json output_json(const OutputOptions& options);

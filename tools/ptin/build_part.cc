@@ -3,7 +3,6 @@
 // ptin build-part: one job of a build in parts.
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
 #include "engine/construct/build_parts.h"
 #include "engine/error.h"
@@ -90,28 +89,29 @@ int run_build_part(const PartCommand& command, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_build_part(Context& context) {
-  const auto command = std::make_shared<PartCommand>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  rows.add("plan", &command->plan, "", "The plan that `ptin build --parts` wrote")
+ask::Parameters parameters_of(PartCommand& command) {
+  ask::Parameters rows;
+  rows.add("plan", &command.plan, "", "The plan that `ptin build --parts` wrote")
       .spelled("PLAN")
       .required_at(ask::Door::kBoth);
-  rows.add("phase", &command->phase, "", "What to do: collapse, join, tighten or publish")
+  rows.add("phase", &command.phase, "", "What to do: collapse, join, tighten or publish")
       .spelled("PHASE")
       .of({"collapse", "join", "tighten", "publish"})
       .required_at(ask::Door::kBoth);
-  rows.add("part", &command->part, "N", "Which part, from 0; of collapse and tighten")
+  rows.add("part", &command.part, "N", "Which part, from 0; of collapse and tighten")
       .spelled("PART")
       .within({.least = 0, .most = 1 << 20});
-  rows.add("memory", &command->memory, "SIZE",
+  rows.add("memory", &command.memory, "SIZE",
            "Limit on the memory of this job (default: that of the plan)");
   rows.push_back(
-      ask::threads_row(command->threads, "Threads of this job (default: one a processor)"));
-  declared.run = [command, &context] { return run_build_part(*command, context); };
-  return declared;
+      ask::threads_row(command.threads, "Threads of this job (default: one a processor)"));
+  return rows;
+}
+
+}  // namespace
+
+Declared declare_build_part(Context& context) {
+  return declared<PartCommand>(context, run_build_part);
 }
 
 }  // namespace ptin::tools

@@ -39,6 +39,14 @@ struct Declared {
   Action run;
 };
 
+/// A subcommand that reads into `Options`, for which `parameters_of(Options&)` has the rows.
+template <typename Options>
+[[nodiscard]] Declared declared(Context& context,
+                                int (*run)(const Options& options, const Context& context)) {
+  const auto options = std::make_shared<Options>();
+  return {parameters_of(*options), [options, run, &context] { return run(*options, context); }};
+}
+
 struct Command {
   const char* name;
   const char* summary;   ///< One line.

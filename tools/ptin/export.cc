@@ -344,44 +344,43 @@ int run_export(const ExportOptions& options, const Context& context) {
   Exported made = export_as(format, options, terrain, context);
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (context.json) {
-    print_json(json_of(made, terrain.store()));
+    print_json_of(made, terrain.store());
   } else if (!context.quiet) {
     print_exported(made, terrain.store().facts());
   }
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_export(Context& context) {
-  const auto options = std::make_shared<ExportOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, false);
-  ask::add_region(rows, options->region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
-  ask::add_detail(rows, options->detail, "; without it the full TIN",
+ask::Parameters parameters_of(ExportOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  ask::add_region(rows, options.region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
+  ask::add_detail(rows, options.detail, "; without it the full TIN",
                   "The TIN of the terrain's N most important vertices");
-  add_output(rows, options->out,
+  add_output(rows, options.out,
              "The file to write; its extension chooses the format: " + known_extensions());
-  rows.add("format", &options->format, "NAME",
+  rows.add("format", &options.format, "NAME",
            "The format: " + known_formats() + " (default: by the extension)")
       .spelled("--format,--of");
-  rows.add("pixel-size", &options->pixel_size, "SIZE",
+  rows.add("pixel-size", &options.pixel_size, "SIZE",
            "Rasters: the size of a pixel, one number or two, in map units, or over "
            "ground as 90m, 0.1km or 300ft, converted at the middle of the window "
            "(default: the source raster's)")
       .values(1, 2);
-  add_pixel_content(rows, options->content);
-  add_model(rows, options->model);
-  rows.add("nodata", &options->nodata, "V",
+  add_pixel_content(rows, options.content);
+  add_model(rows, options.model);
+  rows.add("nodata", &options.nodata, "V",
            "Rasters of heights: the value where there is no surface (default -9999)")
       .within(ask::kAnyNumber);
-  rows.add("co", &options->creation_options, "KEY=VALUE",
+  rows.add("co", &options.creation_options, "KEY=VALUE",
            "Rasters: a creation option of GDAL's driver; may be given several times")
       .repeated();
-  rows.push_back(ask::memory_row(options->memory, "Memory to work in, as 512M or 2G (default 1G)"));
-  declared.run = [options, &context] { return run_export(*options, context); };
-  return declared;
+  rows.push_back(ask::memory_row(options.memory, "Memory to work in, as 512M or 2G (default 1G)"));
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_export(Context& context) { return declared<ExportOptions>(context, run_export); }
 
 }  // namespace ptin::tools

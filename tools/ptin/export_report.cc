@@ -2,11 +2,12 @@
 #include "tools/ptin/export_report.h"
 
 #include <cstdio>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "tools/facts/answers.h"
+#include "tools/ask/mesh.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/mesh_crs.h"
@@ -45,36 +46,78 @@ std::string certainty_text(const Exported& made, const std::string& left_out) {
 
 }  // namespace
 
-ask::Json json_of(const Exported& made, const StoreFile& store) {
+ask::Fields<Exported> exported_fields() {
+  using Row = Exported;
+  const auto of_raster = [](auto member) {
+    return [member](const Row& made) {
+      return made.is_raster ? ask::Json(made.*member) : ask::kLeftOut;
+    };
+  };
+  const auto of_mesh = [](auto member) {
+    return [member](const Row& made) {
+      return made.is_raster ? ask::kLeftOut : ask::Json(made.*member);
+    };
+  };
+  const auto of_changes = [](auto member) {
+    return [member](const Row& made) {
+      return made.changes ? ask::Json(*made.changes.*member) : ask::Json();
+    };
+  };
+  ask::Fields<Row> fields;
+  fields.add("output", "string", "", "The file, as it was named.", &Row::output);
+  fields.add(
+      "format", "string", "",
+      "`PLY`, `OBJ`, `2DM`, `LandXML`, `DXF`, `STL`, `GPKG`, `FlatGeobuf`, `GTiff` or `COG`.",
+      &Row::format);
+  fields.add("bytes", "integer", "bytes", "The output's size.", &Row::bytes);
+  fields.add("seconds", "number", "seconds", "On the clock.", &Row::seconds);
+  fields.add("vertices", "integer", "", "Of triangles: written.", of_mesh(&Row::vertices));
+  fields.add("triangles", "integer", "", "Of triangles: written.", of_mesh(&Row::triangles));
+  fields.add("cells", "integer", "",
+             "Of triangles: squares that the terrain was cut into for the work.",
+             of_mesh(&Row::cells));
+  fields.add_object("local_frame", "object",
+                    "Of STL: where its coordinates stand, local = (map - origin) * scale.",
+                    ask::frame_fields(), &Row::frame);
+  fields.add("width", "integer", "pixels", "Of a raster.", of_raster(&Row::columns));
+  fields.add("height", "integer", "pixels", "Of a raster.", of_raster(&Row::rows));
+  fields.add("pixel_size", "array of numbers", ask::kMapUnit,
+             "Width and height of a raster's pixel.", of_raster(&Row::pixel_size));
+  fields.add("what", "string", "", "Of a raster: `height`, `slope`, `aspect` or `hillshade`.",
+             of_raster(&Row::what));
+  fields.add("slope_unit", "string", "", "Of a raster of slopes: `degree` or `percent`.",
+             [](const Row& made) {
+               return made.slope_unit.empty() ? ask::kLeftOut : ask::Json(made.slope_unit);
+             });
+  fields.add("samples_made_void", "integer or null", "",
+             "Samples with a height (vertices of the file's finest TIN) in the region that lie in "
+             "no surface triangle at this level of detail. Null: not counted, since nothing bounds "
+             "how far the border moved, or the ground around it does not fit `--memory`.",
+             of_changes(&ClassChanges::to_void));
+  fields.add("samples_made_surface", "integer or null", "",
+             "Samples without a height in the region that lie in no void triangle at this level.",
+             of_changes(&ClassChanges::to_surface));
+  fields.add("lone_samples", "integer", "",
+             "Of the whole source, as `build` counted them: they are void, and no certificate "
+             "speaks of them.",
+             &Row::lone_samples);
+  return fields;
+}
+
+void print_json_of(const Exported& made, const StoreFile& store) {
   const Certificate& certificate = made.certificate;
   const CrsFacts crs = crs_facts(store);
   ask::AnswerFacts facts = ask::facts_of(
       certificate, certificate.complete && store.facts().base_error == 0 && made.rounding == 0,
       store, crs);
   facts.transformed = &made.transformed;
-  ask::Json answer = {
-      {"output", made.output},
-      {"format", made.format},
-      {"samples_made_void", made.changes ? ask::Json(made.changes->to_void) : nullptr},
-      {"samples_made_surface", made.changes ? ask::Json(made.changes->to_surface) : nullptr},
-      {"lone_samples", made.lone_samples},
-      {"bytes", made.bytes},
-      {"seconds", made.seconds}};
-  put(answer, facts, ask::Door::kProgram);
-  if (made.is_raster) {
-    answer["width"] = made.columns;
-    answer["height"] = made.rows;
-    answer["pixel_size"] = made.pixel_size;
-    answer["what"] = made.what;
-  } else {
-    answer["vertices"] = made.vertices;
-    answer["triangles"] = made.triangles;
-    answer["cells"] = made.cells;
+  // The certificate speaks of heights.
+  if (made.what != "height") {
+    facts.certified_error = facts.certified_deviation = std::numeric_limits<double>::infinity();
   }
-  if (!made.slope_unit.empty()) answer["slope_unit"] = made.slope_unit;
-  if (made.what != "height") answer["certified_error"] = answer["certified_deviation"] = nullptr;
-  if (made.frame) answer["local_frame"] = frame_json(*made.frame);
-  return answer;
+  ask::Json answer;
+  add_told(answer, exported_fields(), made);
+  print_answer(answer, facts);
 }
 
 void print_exported(const Exported& made, const StoreFacts& facts) {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "engine/query/terrain.h"
-#include "tools/ask/long_text.h"
+#include "tools/ask/field.h"
 #include "tools/formats/mesh.h"
 #include "tools/region/straight_sides.h"
 
@@ -35,9 +35,10 @@ struct Exported {
   double seconds = 0.0;
 };
 
-/// For `--json`. The certificate speaks of heights, so other pixels have none.
-[[nodiscard]] ask::Json json_of(const Exported& made, const StoreFile& store);
+[[nodiscard]] ask::Fields<Exported> exported_fields();
 
+/// Prints it for `--json`. The certificate speaks of heights, so other pixels have none.
+void print_json_of(const Exported& made, const StoreFile& store);
 /// Prints it for people.
 void print_exported(const Exported& made, const StoreFacts& facts);
 

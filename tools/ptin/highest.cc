@@ -4,7 +4,6 @@
 #include "tools/ask/highest.h"
 
 #include <cstdio>
-#include <memory>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -25,10 +24,6 @@ struct HighestOptions {
   ask::HighestQuestion question;
   std::optional<std::uint64_t> memory;
 };
-
-ask::Json position_json(const HeightAt& p) {
-  return {{"x", p.position.x}, {"y", p.position.y}, {"height", p.height}};
-}
 
 void print_text(const HighestResult& result, const HighestOptions& options, bool has_voids) {
   if (result.state != PointState::kSurface) {
@@ -65,31 +60,24 @@ int run_highest(const HighestOptions& options, const Context& context) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
-  ask::Json answer = {{"state", name_of(result.state)},
-                      {"lowest", options.question.request.lowest},
-                      {"point", nullptr},
-                      {"vertices", ask::Json::array()}};
-  if (result.state == PointState::kSurface) {
-    answer["point"] = position_json(result.point);
-    answer["point"]["at_vertex"] = result.at_vertex;
-    answer["point"]["height_min"] = result.height_min;
-    answer["point"]["height_max"] = result.height_max;
-  }
-  for (const HeightAt& v : result.vertices) answer["vertices"].push_back(position_json(v));
+  ask::Json answer;
+  add_told(answer, ask::highest_fields(), ask::HighestAnswer{&result, request.lowest});
   print_answer(answer, ask::facts_of(result, terrain.store(), crs, &asked.transformed));
   return kExitDone;
+}
+
+ask::Parameters parameters_of(HighestOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  ask::add_highest(rows, options.question);
+  rows.push_back(ask::memory_row(options.memory));
+  return rows;
 }
 
 }  // namespace
 
 Declared declare_highest(Context& context) {
-  const auto options = std::make_shared<HighestOptions>();
-  Declared declared;
-  add_terrain(declared.parameters, options->terrain, false);
-  ask::add_highest(declared.parameters, options->question);
-  declared.parameters.push_back(ask::memory_row(options->memory));
-  declared.run = [options, &context] { return run_highest(*options, context); };
-  return declared;
+  return declared<HighestOptions>(context, run_highest);
 }
 
 }  // namespace ptin::tools

@@ -73,16 +73,10 @@ void report(const IsolineOptions& options, const Isolines& lines,
             const IsolineLayer::Written& written, const AskedTerrain& asked,
             const Context& context) {
   if (context.json) {
-    print_answer({{"output", options.out.output},
-                  {"levels", lines.levels()},
-                  {"lines", written.lines},
-                  {"rings", written.rings},
-                  {"points", written.points},
-                  {"crossed",
-                   {{"triangles", lines.crossed.triangles},
-                    {"vertices", lines.crossed.vertices},
-                    {"segments", lines.crossed.segments}}},
-                  {"tiles", lines.tiles}},
+    ask::Json answer = {{"output", options.out.output}};
+    add_told(answer, ask::isoline_fields(),
+             ask::IsolineAnswer{&lines, written.lines, written.rings, written.points});
+    print_answer(answer,
                  ask::facts_of(lines, asked.terrain.store(), asked.crs, &asked.transformed));
   } else if (!context.quiet && options.out.output != "-") {
     std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.out.output.c_str(),
@@ -175,13 +169,9 @@ std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
 std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelSet& levels,
                           const StoreFacts& facts, const IsolineOptions& options,
                           const std::string& wkt) {
+  const auto fields = ask::band_row_fields();
   VectorFile file(options.out.output, options.out.overwrite,
-                  {"contour",
-                   wkbMultiPolygon,
-                   {{"ID", VectorFile::FieldType::kInteger},
-                    {"elev_min", VectorFile::FieldType::kReal},
-                    {"elev_max", VectorFile::FieldType::kReal}},
-                   wkt});
+                  {"contour", wkbMultiPolygon, ask::layer_fields_of(fields), wkt});
   std::uint64_t features = 0;
   for (std::size_t i = 0; i < polygons.size();) {
     const std::uint32_t band = polygons[i].band;
@@ -191,8 +181,7 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
     }
     const double low = band == 0 ? facts.min_height : levels.height(band - 1);
     const double high = band == levels.size() ? facts.max_height : levels.height(band);
-    const VectorFile::Value values[] = {static_cast<std::int64_t>(features), low, high};
-    file.add(std::move(parts), values);
+    file.add(std::move(parts), ask::layer_values_of(fields, ask::BandRow{features, low, high}));
     ++features;
   }
   file.publish();
@@ -225,11 +214,10 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs.wkt);
   if (context.json) {
-    print_answer({{"output", options.out.output},
-                  {"levels", levels.heights()},
-                  {"features", features},
-                  {"polygons", polygons.size()}},
-                 ask::facts_of(refined, terrain.store(), asked.crs, &asked.transformed));
+    ask::Json answer = {{"output", options.out.output}};
+    add_told(answer, ask::band_fields(),
+             ask::BandAnswer{levels.heights(), features, polygons.size()});
+    print_answer(answer, ask::facts_of(refined, terrain.store(), asked.crs, &asked.transformed));
   } else if (!context.quiet && options.out.output != "-") {
     std::printf("%s: %s of %s\n", options.out.output.c_str(), counted(features, "band").c_str(),
                 counted(polygons.size(), "polygon").c_str());
@@ -257,34 +245,35 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
                           : run_lines(options, request, asked, context);
 }
 
-}  // namespace
-
-Declared declare_isoline(Context& context) {
-  const auto options = std::make_shared<IsolineOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, true,
+ask::Parameters parameters_of(IsolineOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, true,
               "Folder for temporary files: lines that do not fit in --memory (default: OUT's "
               "folder), --index spatialindex (default: beside FILE)");
-  ask::add_isolines(rows, options->question);
-  rows.push_back(ask::by_row(options->by));
-  rows.add("3d", &options->z, "", "Points carry the height of their line");
-  rows.add("polygons", &options->polygons, "",
+  ask::add_isolines(rows, options.question);
+  rows.push_back(ask::by_row(options.by));
+  rows.add("3d", &options.z, "", "Points carry the height of their line");
+  rows.add("polygons", &options.polygons, "",
            "Polygons between the levels, with elev_min and elev_max, instead of "
            "lines")
       .spelled("-p,--polygons")
       .excluding("3d");
-  add_output(rows, options->out,
+  add_output(rows, options.out,
              "The layer to write; its extension chooses the format: " + known_isoline_extensions() +
                  "; - is GeoJSON on stdout");
-  rows.push_back(ask::memory_row(options->memory,
+  rows.push_back(ask::memory_row(options.memory,
                                  "Memory for the extraction, as 512M or 2G (default 4G); what does "
                                  "not fit goes to --tmp"));
-  rows.push_back(ask::threads_row(options->threads,
+  rows.push_back(ask::threads_row(options.threads,
                                   "Threads (default: one a processor that affinity and cgroups "
                                   "leave this process); the lines are the same for any number"));
-  declared.run = [options, &context] { return run_isoline(*options, context); };
-  return declared;
+  return rows;
+}
+
+}  // namespace
+
+Declared declare_isoline(Context& context) {
+  return declared<IsolineOptions>(context, run_isoline);
 }
 
 }  // namespace ptin::tools

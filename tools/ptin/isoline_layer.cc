@@ -12,20 +12,13 @@ namespace ptin::tools {
 
 namespace {
 
-VectorFile::Layer layer_of(const IsolineLayer::Options& options) {
+VectorFile::Layer layer_of(const IsolineLayer::Options& options,
+                           const ask::Fields<ask::IsolineRow>& fields) {
   using Type = VectorFile::FieldType;
   if (isoline_format_of(options.path) == IsolineFormat::kDxf)
     return {"entities", wkbLineString25D, {{"Layer", Type::kText}}, {}, "DXF"};
-  VectorFile::Layer layer{"contour",
-                          options.z ? wkbLineString25D : wkbLineString,
-                          {{"ID", Type::kInteger}, {"elev", Type::kReal}},
-                          options.crs.wkt};
-  if (options.steps) {
-    layer.fields.push_back({"step", Type::kInteger});
-    layer.fields.push_back({"splits", Type::kReal});  // may exceed 32 bits
-    layer.fields.push_back({"error", Type::kReal});
-  }
-  return layer;
+  return {"contour", options.z ? wkbLineString25D : wkbLineString, ask::layer_fields_of(fields),
+          options.crs.wkt};
 }
 
 }  // namespace
@@ -53,11 +46,14 @@ bool IndexLevels::holds(double level) const {
 }
 
 IsolineLayer::IsolineLayer(const Options& options)
-    : options_(options), format_(isoline_format_of(options.path)) {
+    : options_(options),
+      format_(isoline_format_of(options.path)),
+      fields_(ask::isoline_row_fields().told(ask::Door::kProgram, ask::As::kFeature)) {
+  if (!options.steps) fields_ = fields_.without("step").without("splits").without("error");
   if (format_ == IsolineFormat::kLandXml) {
     contours_.emplace(options.path, options.overwrite, options.crs);
   } else {
-    VectorFile::Layer layer = layer_of(options);
+    VectorFile::Layer layer = layer_of(options, fields_);
     if (format_ == IsolineFormat::kDxf) {
       layer.creation = {header_.emplace(options.crs).option()};
     }
@@ -67,7 +63,7 @@ IsolineLayer::IsolineLayer(const Options& options)
 
 void IsolineLayer::publish() { contours_ ? contours_->publish() : file_->publish(); }
 
-IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const IsolineStep& step,
+IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const ask::IsolineStep& step,
                                         const std::optional<Window>& window) {
   Written written;
   std::vector<MapPoint> points;
@@ -90,7 +86,7 @@ IsolineLayer::Written IsolineLayer::add(const Isolines& lines, const IsolineStep
 }
 
 void IsolineLayer::add_line(std::span<const MapPoint> points, bool ring, double elevation,
-                            const IsolineStep& step, Written& written) {
+                            const ask::IsolineStep& step, Written& written) {
   if (format_ == IsolineFormat::kLandXml) {
     contours_->add(points, elevation);
   } else if (format_ == IsolineFormat::kDxf) {
@@ -98,11 +94,8 @@ void IsolineLayer::add_line(std::span<const MapPoint> points, bool ring, double 
                                                                         : "contour"};
     file_->add(line_geometry(points, &elevation), values);
   } else {
-    const VectorFile::Value values[] = {static_cast<std::int64_t>(next_id_++), elevation,
-                                        static_cast<std::int64_t>(step.step),
-                                        static_cast<double>(step.splits), step.certified_error};
     file_->add(line_geometry(points, options_.z ? &elevation : nullptr),
-               std::span(values).first(options_.steps ? 5 : 2));
+               ask::layer_values_of(fields_, ask::IsolineRow{next_id_++, elevation, ring, &step}));
   }
   ++written.lines;
   written.rings += ring ? 1 : 0;

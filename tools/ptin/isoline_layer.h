@@ -12,19 +12,12 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
+#include "tools/ask/isolines.h"
 #include "tools/formats/dxf_units.h"
 #include "tools/formats/land_xml_contours.h"
 #include "tools/formats/vector_file.h"
 
 namespace ptin::tools {
-
-/// A state of isolines that change while splits arrive; written as the fields `step`, `splits` and
-/// `error`.
-struct IsolineStep {
-  std::uint64_t step = 0;        ///< From 0.
-  std::uint64_t splits = 0;      ///< Applied to T0 by then.
-  double certified_error = 0.0;  ///< Of the TIN whose isolines these are.
-};
 
 /// Where isolines can go. A DXF has no fields: lines lie at their heights, on the layers `contour` and
 /// `contour_index`. LandXML has the height of each.
@@ -53,7 +46,7 @@ class IsolineLayer {
     std::string path;
     bool overwrite = false;
     bool z = false;      ///< Points carry the height of their line.
-    bool steps = false;  ///< Lines of several states; adds the fields of IsolineStep.
+    bool steps = false;  ///< Lines of several states; adds the fields of ask::IsolineStep.
     CrsFacts crs;
     IndexLevels index;
     std::stop_token stop;
@@ -67,20 +60,21 @@ class IsolineLayer {
 
   /// Writes lines behind those that were written before, cut at `window` when there is one.
   /// @throws Error cancelled, io_error
-  Written add(const Isolines& lines, const IsolineStep& step = {},
+  Written add(const Isolines& lines, const ask::IsolineStep& step = {},
               const std::optional<Window>& window = {});
   /// @throws Error as VectorFile::publish
   void publish();
 
  private:
   void add_line(std::span<const MapPoint> points, bool ring, double elevation,
-                const IsolineStep& step, Written& written);
+                const ask::IsolineStep& step, Written& written);
 
   Options options_;
   IsolineFormat format_;
   std::optional<DxfHeader> header_;          ///< A drawing's, which needs it until it is closed.
   std::optional<VectorFile> file_;           ///< The file of any format but LandXML,
   std::optional<LandXmlContours> contours_;  ///< whose contours are here.
+  ask::Fields<ask::IsolineRow> fields_;      ///< Of a layer that has fields.
   std::uint64_t next_id_ = 0;
 };
 

@@ -48,40 +48,18 @@ struct Located {
     if (!asked.ids.empty()) row.id = &asked.ids[i];
     return row;
   }
-  [[nodiscard]] ask::Columns<ask::LocatedRow> columns(ask::As as) const {
-    auto columns = ask::columns_of(ask::located_fields(), ask::Door::kProgram, as);
-    return asked.ids.empty() ? without(std::move(columns), "id") : columns;
+  [[nodiscard]] ask::Fields<ask::LocatedRow> fields(ask::As as) const {
+    const auto fields = ask::located_fields().told(ask::Door::kProgram, as);
+    return asked.ids.empty() ? fields.without("id") : fields;
   }
 };
 
-/// One row for each point, in the order of the request; what is unknown is left empty.
-std::string csv_of(const Located& located) {
-  const auto columns = located.columns(ask::As::kTableRow);
-  ask::LongText text;
-  ask::add_csv_heading(text, columns);
-  for (std::size_t i = 0; i < located.asked.all.size(); ++i) {
-    ask::add_csv_row(text, columns, located.row(i));
-  }
-  return text.take();
-}
-
-/// The same as a layer of points.
-void write_layer(const OutputOptions& options, const Located& located, const CrsFacts& crs) {
-  const auto columns = located.columns(ask::As::kFeature);
-  VectorFile file(options.output, options.overwrite,
-                  {"points", wkbPoint, ask::layer_fields_of(columns), crs.wkt});
-  for (std::size_t i = 0; i < located.asked.all.size(); ++i) {
-    const ask::LocatedRow row = located.row(i);
-    file.add(std::make_unique<OGRPoint>(row.at.x, row.at.y), ask::layer_values_of(columns, row));
-  }
-  file.publish();
-}
-
+/// The answer, point by point.
 ask::Json answer_of(const LocateOptions& options, const Located& located) {
   ask::Json answer = {{"output", output_json(options.answer)}, {"points", ask::Json::array()}};
+  const auto fields = located.fields(ask::As::kObject);
   for (std::size_t i = 0; i < located.asked.all.size(); ++i) {
-    answer["points"].push_back(
-        ask::object_of(ask::located_fields(), located.row(i), ask::Door::kProgram));
+    answer["points"].push_back(ask::object_of(fields, located.row(i)));
   }
   return answer;
 }
@@ -104,9 +82,16 @@ int run_locate(const LocateOptions& options, const Context& context) {
   const LocateResult result = terrain.locate(asked.all, request, options.by);
   warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   const Located located{asked, result, terrain.store()};
-  if (form == AnswerForm::kLayer) write_layer(options.answer, located, crs);
+  const auto row_at = [&](std::size_t i) { return located.row(i); };
+  if (form == AnswerForm::kLayer) {
+    write_layer(options.answer, {"points", wkbPoint, {}, crs.wkt},
+                located.fields(ask::As::kFeature), asked.all.size(), row_at, [&](std::size_t i) {
+                  return std::make_unique<OGRPoint>(asked.all[i].x, asked.all[i].y);
+                });
+  }
   if (form == AnswerForm::kCsv || !context.json) {
-    write_csv(options.answer, form, context.json, csv_of(located));
+    write_csv(options.answer, form, context.json,
+              table_of(located.fields(ask::As::kTableRow), asked.all.size(), row_at));
   }
   if (context.json) {
     print_answer(answer_of(options, located), ask::facts_of(result, terrain.store(), crs));
@@ -114,28 +99,24 @@ int run_locate(const LocateOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_locate(Context& context) {
-  const auto options = std::make_shared<LocateOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, true);
-  rows.add("x_y", &options->point, "X Y", "A point")
-      .spelled("X_Y")
-      .in(ask::Unit::kMap)
-      .values(2, 2);
-  rows.add("points", &options->points, "FILE",
+ask::Parameters parameters_of(LocateOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, true);
+  rows.add("x_y", &options.point, "X Y", "A point").spelled("X_Y").in(ask::Unit::kMap).values(2, 2);
+  rows.add("points", &options.points, "FILE",
            "Points: text with x and y in the first columns, or in those that a header "
            "names so (- reads standard input), or a vector file (transformed to the "
            "terrain's CRS)");
-  add_input_choice(rows, options->choice, "points", "x, y");
-  ask::add_locate(rows, options->request);
-  rows.push_back(ask::by_row(options->by));
-  rows.push_back(ask::memory_row(options->memory));
-  add_answer_output(rows, options->answer);
-  declared.run = [options, &context] { return run_locate(*options, context); };
-  return declared;
+  add_input_choice(rows, options.choice, "points", "x, y");
+  ask::add_locate(rows, options.request);
+  rows.push_back(ask::by_row(options.by));
+  rows.push_back(ask::memory_row(options.memory));
+  add_answer_output(rows, options.answer);
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_locate(Context& context) { return declared<LocateOptions>(context, run_locate); }
 
 }  // namespace ptin::tools

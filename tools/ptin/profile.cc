@@ -61,16 +61,12 @@ struct Written {
 
 /// The profile as CSV: heights, with the interval that the certificate guarantees.
 std::string csv_of(const Written& written) {
-  auto columns = ask::columns_of(ask::profile_fields(), ask::Door::kProgram, ask::As::kTableRow,
-                                 {"distance", "x", "y", "height", "state", "line"});
-  if (!written.options.has_stations()) columns = without(std::move(columns), "station");
-  if (written.ids.empty()) columns = without(std::move(columns), "id");
-  ask::LongText text;
-  ask::add_csv_heading(text, columns);
-  for (const ProfilePoint& p : written.profile.points) {
-    ask::add_csv_row(text, columns, written.row(p));
-  }
-  return text.take();
+  auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kTableRow,
+                                           {"distance", "x", "y", "height", "state", "line"});
+  if (!written.options.has_stations()) fields = fields.without("station");
+  if (written.ids.empty()) fields = fields.without("id");
+  const std::vector<ProfilePoint>& points = written.profile.points;
+  return table_of(fields, points.size(), [&](std::size_t i) { return written.row(points[i]); });
 }
 
 /// The stretches of one line that have heights.
@@ -89,33 +85,29 @@ std::unique_ptr<OGRGeometry> stretches_of(std::span<const ProfilePoint> points) 
 
 /// Writes the profile as a layer, a feature for each line.
 void write_layer(const Written& written) {
-  auto columns =
-      ask::columns_of(ask::profile_line_fields(), ask::Door::kProgram, ask::As::kFeature);
-  if (written.ids.empty()) columns = without(std::move(columns), "id");
-  const OutputOptions& out = written.options.answer;
-  VectorFile file(
-      out.output, out.overwrite,
-      {"profile", wkbMultiLineString25D, ask::layer_fields_of(columns), written.crs.wkt});
-  for (const std::span<const ProfilePoint> line : lines_of(written.profile)) {
-    const ask::ProfileLineRow row{line, written.profile, written.id(line.front().line)};
-    file.add(stretches_of(line), ask::layer_values_of(columns, row));
-  }
-  file.publish();
+  auto fields = ask::profile_line_fields().told(ask::Door::kProgram, ask::As::kFeature);
+  if (written.ids.empty()) fields = fields.without("id");
+  const std::vector<std::span<const ProfilePoint>> lines = lines_of(written.profile);
+  const auto row_at = [&](std::size_t i) {
+    return ask::ProfileLineRow{lines[i], written.profile, written.id(lines[i].front().line)};
+  };
+  write_layer(written.options.answer, {"profile", wkbMultiLineString25D, {}, written.crs.wkt},
+              fields, lines.size(), row_at, [&](std::size_t i) { return stretches_of(lines[i]); });
 }
 
 /// Writes stations as a layer, a feature for each.
 void write_stations(const Written& written) {
-  auto columns = ask::columns_of(ask::profile_fields(), ask::Door::kProgram, ask::As::kFeature);
-  if (written.ids.empty()) columns = without(std::move(columns), "id");
-  const OutputOptions& out = written.options.answer;
-  VectorFile file(out.output, out.overwrite,
-                  {"stations", wkbPoint25D, ask::layer_fields_of(columns), written.crs.wkt});
-  for (const ProfilePoint& p : written.profile.points) {
+  auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kFeature);
+  if (written.ids.empty()) fields = fields.without("id");
+  const std::vector<ProfilePoint>& points = written.profile.points;
+  const auto geometry_at = [&](std::size_t i) {
+    const ProfilePoint& p = points[i];
     const double z = std::isfinite(p.height) ? p.height : 0.0;  // the field tells what is unknown
-    file.add(std::make_unique<OGRPoint>(p.position.x, p.position.y, z),
-             ask::layer_values_of(columns, written.row(p)));
-  }
-  file.publish();
+    return std::make_unique<OGRPoint>(p.position.x, p.position.y, z);
+  };
+  write_layer(
+      written.options.answer, {"stations", wkbPoint25D, {}, written.crs.wkt}, fields, points.size(),
+      [&](std::size_t i) { return written.row(points[i]); }, geometry_at);
 }
 
 /// How the plot names units, and how distances and heights compare.
@@ -146,15 +138,14 @@ ask::Json answer_of(const Written& written, const std::optional<Transformed>& tr
                     const StoreFile& store) {
   ask::Json answer = {{"output", output_json(written.options.answer)},
                       {"points", ask::Json::array()}};
-  put(answer, ask::facts_of(written.profile, store, written.crs, &transformed),
-      ask::Door::kProgram);
-  put(answer, ask::profile_answer_fields(),
-      ask::ProfileAnswer{written.profile, written.crs,
-                         written.ids.empty() ? nullptr : &written.ids},
-      ask::Door::kProgram);
+  add_told(answer, ask::answer_fields(),
+           ask::facts_of(written.profile, store, written.crs, &transformed));
+  add_told(answer, ask::profile_answer_fields(),
+           ask::ProfileAnswer{written.profile, written.crs,
+                              written.ids.empty() ? nullptr : &written.ids});
+  const auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kObject);
   for (const ProfilePoint& p : written.profile.points) {
-    answer["points"].push_back(
-        ask::object_of(ask::profile_fields(), written.row(p), ask::Door::kProgram));
+    answer["points"].push_back(ask::object_of(fields, written.row(p)));
   }
   return answer;
 }
@@ -198,26 +189,27 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_profile(Context& context) {
-  const auto options = std::make_shared<ProfileOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, false);
-  rows.add("line", &options->line, "WKT_OR_FILE",
+ask::Parameters parameters_of(ProfileOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  rows.add("line", &options.line, "WKT_OR_FILE",
            "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector "
            "file (transformed to the terrain's CRS)")
       .required_at(ask::Door::kBoth);
-  add_input_choice(rows, options->choice, "line", "");
-  ask::add_profile(rows, options->request);
-  rows.add("stations-only", &options->stations_only, "",
+  add_input_choice(rows, options.choice, "line", "");
+  ask::add_profile(rows, options.request);
+  rows.add("stations-only", &options.stations_only, "",
            "The stations alone: rows of CSV, or points of a layer")
       .needing("stations");
-  rows.push_back(ask::memory_row(options->memory));
-  add_answer_output(rows, options->answer, {.plot = true});
-  declared.run = [options, &context] { return run_profile(*options, context); };
-  return declared;
+  rows.push_back(ask::memory_row(options.memory));
+  add_answer_output(rows, options.answer, {.plot = true});
+  return rows;
+}
+
+}  // namespace
+
+Declared declare_profile(Context& context) {
+  return declared<ProfileOptions>(context, run_profile);
 }
 
 }  // namespace ptin::tools

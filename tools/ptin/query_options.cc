@@ -160,7 +160,7 @@ std::uint64_t memory_limit_of(std::optional<std::uint64_t> memory, std::uint64_t
 }
 
 void print_answer(ask::Json answer, const ask::AnswerFacts& facts) {
-  ask::put(answer, facts, ask::Door::kProgram);
+  add_told(answer, ask::answer_fields(), facts);
   print_json(answer);
 }
 

@@ -85,6 +85,11 @@ void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
 /// Memory as memory_limit_of(), and the program's stop token.
 [[nodiscard]] QueryLimits limits_of(std::optional<std::uint64_t> memory, const Context& context);
 
+/// Adds what the command line tells of a row.
+template <typename Row>
+void add_told(ask::Json& answer, const ask::Fields<Row>& fields, const Row& row) {
+  ask::put(answer, fields.told(ask::Door::kProgram, ask::As::kObject), row);
+}
 /// Prints an answer with the fields that every answer has.  @throws Error as write_to_stdout
 void print_answer(ask::Json answer, const ask::AnswerFacts& facts);
 /// Prints JSON, indented and by the order of names, and a newline to stdout. Infinite numbers become null.

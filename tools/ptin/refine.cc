@@ -3,11 +3,11 @@
 // ptin refine: one question to the store, one mesh file.
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
+#include "tools/ask/mesh.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -48,19 +48,6 @@ void check_options(const RefineOptions& options) {
   static_cast<void>(mesh_format_of(options.out.output));
   check_model(options.model, options.out.output);
   check_output(options.out.output, options.out.overwrite);
-}
-
-/// @param mesh  As it is written.
-ask::Json answer_of(const RefineOptions& options, const RefinedTin& refined, const Mesh& mesh) {
-  ask::Json answer = {
-      {"output", options.out.output},
-      {"vertices", refined.vertices},
-      {"void_vertices", refined.void_vertices},
-      {"triangles", refined.triangles},
-      {"t0_vertices", refined.t0_vertices},
-      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}}};
-  if (has_frame(options.out.output)) answer["local_frame"] = frame_json(mesh.frame);
-  return answer;
 }
 
 /// Why so many vertices or triangles are written and not as many as were asked for; empty where as
@@ -155,8 +142,11 @@ int run_refine(const RefineOptions& options, const Context& context) {
                  options.out.output.c_str());
   }
   if (context.json) {
-    print_answer(answer_of(options, refined, written),
-                 ask::facts_of(refined, terrain.store(), crs, &asked.transformed));
+    ask::Json answer = {{"output", options.out.output}};
+    add_told(answer, ask::mesh_fields(),
+             ask::MeshAnswer{&refined, written.vertices.size(), written.triangles.size(),
+                             has_frame(options.out.output) ? &written.frame : nullptr});
+    print_answer(answer, ask::facts_of(refined, terrain.store(), crs, &asked.transformed));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
     if (options.model.base) {
@@ -168,35 +158,34 @@ int run_refine(const RefineOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_refine(Context& context) {
-  const auto options = std::make_shared<RefineOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, true);
-  ask::add_region(rows, options->region, ask::RegionKinds::kAll, ask::Door::kProgram);
+ask::Parameters parameters_of(RefineOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, true);
+  ask::add_region(rows, options.region, ask::RegionKinds::kAll, ask::Door::kProgram);
   ask::add_detail(
-      rows, options->request.detail, "",
+      rows, options.request.detail, "",
       "A mesh of exactly this many vertices, the most important ones of the region; not "
       "written are those in void triangles alone, and what --clip and --cut leave out");
-  rows.add("triangles", &options->request.triangles, "N",
+  rows.add("triangles", &options.request.triangles, "N",
            "The mesh of the most important vertices that has at most this many "
            "triangles, void ones included; --clip and --cut leave some of them out")
       .excluding("error vertices");
-  rows.add("clip", &options->clip, "", "Keep only the triangles that meet the region, whole");
-  rows.add("cut", &options->cut, "", "Cut the triangles at the border of the region")
+  rows.add("clip", &options.clip, "", "Keep only the triangles that meet the region, whole");
+  rows.add("cut", &options.cut, "", "Cut the triangles at the border of the region")
       .excluding("clip");
   std::string formats;
   for (const MeshFormat& format : mesh_formats()) {
     formats.append(formats.empty() ? "." : ", .").append(format.extension);
   }
-  add_output(rows, options->out, "The mesh to write; its extension chooses the format: " + formats);
-  add_model(rows, options->model);
-  rows.add("stats", &options->stats, "", "Print what is certified and what it cost, too");
-  rows.push_back(ask::memory_row(options->memory));
-  declared.run = [options, &context] { return run_refine(*options, context); };
-  return declared;
+  add_output(rows, options.out, "The mesh to write; its extension chooses the format: " + formats);
+  add_model(rows, options.model);
+  rows.add("stats", &options.stats, "", "Print what is certified and what it cost, too");
+  rows.push_back(ask::memory_row(options.memory));
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_refine(Context& context) { return declared<RefineOptions>(context, run_refine); }
 
 }  // namespace ptin::tools

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -183,26 +182,25 @@ int run_render(const RenderOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_render(Context& context) {
-  const auto options = std::make_shared<RenderOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, false);
-  ask::add_region(rows, options->region, ask::RegionKinds::kWindow, ask::Door::kProgram);
+ask::Parameters parameters_of(RenderOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  ask::add_region(rows, options.region, ask::RegionKinds::kWindow, ask::Door::kProgram);
   rows.push_back(ask::error_row(
-      options->error, "Certified error allowed; without it as fine as the pixels can show"));
-  rows.add("size", &options->size, "W H", "Pixels (default: the longer side has 1200)")
+      options.error, "Certified error allowed; without it as fine as the pixels can show"));
+  rows.add("size", &options.size, "W H", "Pixels (default: the longer side has 1200)")
       .within({.least = 1, .most = kMostPixels})
       .values(2, 2);
-  rows.add("wireframe", &options->wireframe, "", "Draw the triangles");
-  rows.add("pages", &options->pages, "", "Colour triangles by the page that each came from");
-  rows.add("no-legend", &options->no_legend, "", "No scale bar and no height colours");
-  add_output(rows, options->out, "The picture to write: " + known_picture_extensions());
-  rows.push_back(ask::memory_row(options->memory));
-  declared.run = [options, &context] { return run_render(*options, context); };
-  return declared;
+  rows.add("wireframe", &options.wireframe, "", "Draw the triangles");
+  rows.add("pages", &options.pages, "", "Colour triangles by the page that each came from");
+  rows.add("no-legend", &options.no_legend, "", "No scale bar and no height colours");
+  add_output(rows, options.out, "The picture to write: " + known_picture_extensions());
+  rows.push_back(ask::memory_row(options.memory));
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_render(Context& context) { return declared<RenderOptions>(context, run_render); }
 
 }  // namespace ptin::tools

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -154,41 +153,38 @@ std::string limits_help() {
   return help;
 }
 
-}  // namespace
-
-Declared declare_serve(Context& context) {
-  const auto command = std::make_shared<ServeCommand>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  rows.add("file", &command->files, "FILE...", "Files, each as FILE or NAME=FILE")
+ask::Parameters parameters_of(ServeCommand& command) {
+  ask::Parameters rows;
+  rows.add("file", &command.files, "FILE...", "Files, each as FILE or NAME=FILE")
       .spelled("FILE")
       .values(1, ask::kAnyNumberOfValues);
-  rows.add("listen", &command->listen, "ADDRESS:PORT",
-           "Where to listen; 127.0.0.1:8080 without it");
-  rows.add("config", &command->config, "FILE",
+  rows.add("listen", &command.listen, "ADDRESS:PORT", "Where to listen; 127.0.0.1:8080 without it");
+  rows.add("config", &command.config, "FILE",
            "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
            "[collections], [limits]; options win over it");
-  rows.push_back(
-      ask::threads_row(command->threads,
-                       "Questions of each lane (points, tiles, sweeps) that are computed at once"));
-  rows.add("memory", &command->memory, "SIZE",
+  rows.push_back(ask::threads_row(
+      command.threads, "Questions of each lane (points, tiles, sweeps) that are computed at once"));
+  rows.add("memory", &command.memory, "SIZE",
            "Memory of all bodies, questions and answers; as much as fills all threads "
            "without it");
-  rows.add("limit", &command->limits, "NAME=VALUE", limits_help()).repeated();
-  rows.add("cors", &command->cors, "ORIGIN", "Web pages of this origin may ask; * for all");
-  rows.add("token-file", &command->token_file, "FILE",
+  rows.add("limit", &command.limits, "NAME=VALUE", limits_help()).repeated();
+  rows.add("cors", &command.cors, "ORIGIN", "Web pages of this origin may ask; * for all");
+  rows.add("token-file", &command.token_file, "FILE",
            "Questions need the token of its first line, as Authorization: Bearer "
            "TOKEN, or once as ?token=TOKEN in a browser");
-  rows.add("metrics", &command->metrics, "WHO",
+  rows.add("metrics", &command.metrics, "WHO",
            "Who reads /metrics: open, token, closed; without it whoever may ask "
            "questions");
-  rows.add("trusted-proxy", &command->trusted_proxies, "ADDRESS[/BITS]",
+  rows.add("trusted-proxy", &command.trusted_proxies, "ADDRESS[/BITS]",
            "A proxy that is believed its X-Forwarded-For and -Proto; may be given "
            "often")
       .repeated();
-  rows.add("files", &command->offers_files, "", "Give out the files themselves, by ranges");
-  declared.run = [command, &context] { return run_serve(*command, context); };
-  return declared;
+  rows.add("files", &command.offers_files, "", "Give out the files themselves, by ranges");
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_serve(Context& context) { return declared<ServeCommand>(context, run_serve); }
 
 }  // namespace ptin::tools

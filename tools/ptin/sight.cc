@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -85,66 +84,64 @@ class SightAnswers {
         asked_(asked),
         is_json_(context.json),
         form_(form_of(options.answer, context.json, {.plot = true})),
-        columns_(ask::columns_of(ask::sight_fields(), ask::Door::kProgram, ask::As::kTableRow)) {
-    if (asked.ids.empty()) columns_ = without(std::move(columns_), "id");
-    ask::add_csv_heading(csv_, columns_);
-    if (form_ != AnswerForm::kLayer) return;
-    layer_.emplace(options.answer.output, options.answer.overwrite,
-                   VectorFile::Layer{"lines_of_sight", wkbLineString,
-                                     ask::layer_fields_of(columns_), crs.wkt});
-  }
+        crs_(crs) {}
 
   [[nodiscard]] bool are_plotted() const { return form_ == AnswerForm::kPlot; }
 
   /// Takes the answer of the next pair with what the plot shows of it.
   void add_plotted(const SightResult& result, PlottedSight sight) {
     sight.title = "line of sight";
-    if (!options_.pairs.empty()) sight.title = "pair " + std::to_string(count_ + 1);
-    if (!asked_.ids.empty()) sight.title = asked_.ids[count_];
+    if (!options_.pairs.empty()) sight.title = "pair " + std::to_string(results_.size() + 1);
+    if (!asked_.ids.empty()) sight.title = asked_.ids[results_.size()];
     sight.result = result;
     plotted_.push_back(std::move(sight));
     add(result);
   }
-
-  void add(const SightResult& result) {
-    ask::SightRow row(result);
-    const SightPair& pair = asked_.all[count_];
-    if (!asked_.ids.empty()) row.id = &asked_.ids[count_];
-    ++count_;
-    if (is_json_) {
-      json_.push_back(ask::object_of(ask::sight_fields(), row, ask::Door::kProgram));
-    }
-    if (layer_) {
-      const std::array<MapPoint, 2> ends = {pair.a, pair.b};
-      layer_->add(line_geometry(ends, nullptr), ask::layer_values_of(columns_, row));
-    }
-    if (form_ == AnswerForm::kCsv || (form_ == AnswerForm::kStdout && !is_json_)) {
-      ask::add_csv_row(csv_, columns_, row);
-    }
-  }
+  void add(const SightResult& result) { results_.push_back(result); }
 
   /// Completes what is written. Returns the answers as JSON, where that is asked for.
   ask::Json finish(const SightRequest& request, const PlotUnits& units) {
-    if (layer_) layer_->publish();
+    const auto row_at = [&](std::size_t i) {
+      ask::SightRow row(results_[i]);
+      if (!asked_.ids.empty()) row.id = &asked_.ids[i];
+      return row;
+    };
+    if (form_ == AnswerForm::kLayer) {
+      write_layer(options_.answer, {"lines_of_sight", wkbLineString, {}, crs_.wkt},
+                  fields(ask::As::kFeature), results_.size(), row_at, [&](std::size_t i) {
+                    const std::array<MapPoint, 2> ends = {asked_.all[i].a, asked_.all[i].b};
+                    return line_geometry(ends, nullptr);
+                  });
+    }
     if (are_plotted()) {
       plot_sights(options_.answer.output, options_.answer.overwrite, plotted_,
                   {request.curvature, request.wavelength}, units);
     }
-    write_csv(options_.answer, form_, is_json_, csv_.take());
-    return std::move(json_);
+    if (form_ == AnswerForm::kCsv || (form_ == AnswerForm::kStdout && !is_json_)) {
+      write_csv(options_.answer, form_, is_json_,
+                table_of(fields(ask::As::kTableRow), results_.size(), row_at));
+    }
+    ask::Json all = ask::Json::array();
+    const auto told = fields(ask::As::kObject);
+    for (std::size_t i = 0; is_json_ && i < results_.size(); ++i) {
+      all.push_back(ask::object_of(told, row_at(i)));
+    }
+    return all;
   }
 
  private:
+  [[nodiscard]] ask::Fields<ask::SightRow> fields(ask::As as) const {
+    const auto fields = ask::sight_fields().told(ask::Door::kProgram, as);
+    return asked_.ids.empty() ? fields.without("id") : fields;
+  }
+
   const SightOptions& options_;
   const Asked<SightPair>& asked_;
   bool is_json_;
   AnswerForm form_;
-  ask::Columns<ask::SightRow> columns_;
-  ask::LongText csv_;
-  std::optional<VectorFile> layer_;
+  const CrsFacts& crs_;
+  std::vector<SightResult> results_;
   std::vector<PlottedSight> plotted_;
-  ask::Json json_ = ask::Json::array();
-  std::size_t count_ = 0;
 };
 
 int run_sight(const SightOptions& options, const Context& context) {
@@ -187,29 +184,28 @@ int run_sight(const SightOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_sight(Context& context) {
-  const auto options = std::make_shared<SightOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, true);
-  rows.add("pair", &options->pair, "X1 Y1 H1 X2 Y2 H2",
+ask::Parameters parameters_of(SightOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, true);
+  rows.add("pair", &options.pair, "X1 Y1 H1 X2 Y2 H2",
            "The two ends in map units, each with its height above ground, in the "
            "height's unit")
       .spelled("PAIR")
       .values(6, 6);
-  rows.add("pairs", &options->pairs, "FILE",
+  rows.add("pairs", &options.pairs, "FILE",
            "Text with such six numbers in each row, or with a header that names x1 y1 "
            "h1 x2 y2 h2 (- reads standard input), or a vector file of lines with "
            "heights at their ends");
-  add_input_choice(rows, options->choice, "pairs", "x1, y1, h1, x2, y2, h2");
-  ask::add_sight(rows, options->question);
-  rows.push_back(ask::by_row(options->by));
-  rows.push_back(ask::memory_row(options->memory));
-  add_answer_output(rows, options->answer, {.plot = true});
-  declared.run = [options, &context] { return run_sight(*options, context); };
-  return declared;
+  add_input_choice(rows, options.choice, "pairs", "x1, y1, h1, x2, y2, h2");
+  ask::add_sight(rows, options.question);
+  rows.push_back(ask::by_row(options.by));
+  rows.push_back(ask::memory_row(options.memory));
+  add_answer_output(rows, options.answer, {.plot = true});
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_sight(Context& context) { return declared<SightOptions>(context, run_sight); }
 
 }  // namespace ptin::tools

@@ -2,13 +2,13 @@
 //
 // ptin stream: a terrain as bytes of which the first few are a coarse terrain.
 #include <cstdio>
-#include <memory>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
+#include "tools/ask/mesh.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -109,13 +109,9 @@ int run_stream(const StreamOptions& options, const Context& context) {
         ask::facts_of(summary.certificate,
                       summary.certificate.complete && store.facts().base_error == 0, store, crs);
     facts.cost = &summary.cost;
-    print_answer({{"output", options.out.output},
-                  {"base_vertices", summary.base_vertices},
-                  {"splits", summary.splits},
-                  {"frames", summary.frames},
-                  {"bytes", summary.bytes},
-                  {"split_bytes", summary.split_bytes}},
-                 facts);
+    ask::Json answer = {{"output", options.out.output}};
+    add_told(answer, ask::stream_fields(), summary);
+    print_answer(answer, facts);
   } else if (options.stats) {
     print_stats(options, summary);
   }
@@ -141,23 +137,22 @@ void add_serving(ask::Parameters& rows, Serving& serving, bool is_had) {
                "ones");
 }
 
-}  // namespace
-
-Declared declare_stream(Context& context) {
-  const auto options = std::make_shared<StreamOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, false);
-  add_serving(rows, options->wanted, false);
-  add_serving(rows, options->had, true);
-  rows.add("have", &options->have, "JSON",
+ask::Parameters parameters_of(StreamOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  add_serving(rows, options.wanted, false);
+  add_serving(rows, options.had, true);
+  rows.add("have", &options.have, "JSON",
            "What the receiver was served before, as `ptin unstream --json` prints "
            "it");
-  add_output(rows, options->out, "The stream to write; - for stdout");
-  rows.add("stats", &options->stats, "", "Print, on stderr, what was sent and what it cost");
-  rows.push_back(ask::memory_row(options->memory));
-  declared.run = [options, &context] { return run_stream(*options, context); };
-  return declared;
+  add_output(rows, options.out, "The stream to write; - for stdout");
+  rows.add("stats", &options.stats, "", "Print, on stderr, what was sent and what it cost");
+  rows.push_back(ask::memory_row(options.memory));
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_stream(Context& context) { return declared<StreamOptions>(context, run_stream); }
 
 }  // namespace ptin::tools

@@ -73,8 +73,8 @@ void StreamIsolines::begin(const StreamReader& reader) {
 
 void StreamIsolines::write(const StreamReader& reader) {
   const Isolines lines = isolines_->lines(reader.tin(), context_);
-  const IsolineStep step{steps_.size(), reader.tin().vertices.size() - reader.t0_vertices(),
-                         reader.certificate().error};
+  const ask::IsolineStep step{steps_.size(), reader.tin().vertices.size() - reader.t0_vertices(),
+                              reader.certificate().error};
   last_ = {lines.size(), 0, lines.points()};
   if (layer_) {
     last_ = layer_->add(lines, step, window_);

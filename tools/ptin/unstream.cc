@@ -14,6 +14,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/terrain.h"
 #include "engine/stop.h"
+#include "tools/ask/mesh.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -181,27 +182,23 @@ void warn_of_what_is_beyond(const Receiver& receiver, const Serving& asked,
 }
 
 ask::Json answer_of(const UnstreamOptions& options, const Receiver& receiver,
-                    const RefinedTin& refined, const Mesh& mesh, const CrsFacts& crs,
-                    const Serving& asked) {
+                    const ask::MeshAnswer& told, const CrsFacts& crs, const Serving& asked) {
   const StreamReader& reader = receiver.reader();
+  const RefinedTin& refined = *told.refined;
   const Serving certified = receiver.certified_for();
   ask::Json answer = {
       {"output", options.out.output.empty() ? ask::Json() : ask::Json(options.out.output)},
       {"complete", receiver.complete()},
       {"splits", reader.splits()},
       {"splits_in_all", reader.splits_in_all()},
-      {"vertices", refined.vertices},
-      {"void_vertices", refined.void_vertices},
-      {"triangles", refined.triangles},
-      {"t0_vertices", refined.t0_vertices},
-      {"written", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size()}}},
       {"certified_for", certified.given() ? ask::Json(to_json(certified)) : ask::Json()},
       {"bytes_used", reader.bytes_used()},
       {"have", receiver.have()}};
   const ask::AnswerFacts facts{refined.certified_error, refined.certified_deviation,
                                border_move_of(reader, refined.certified_error),
                                receiver.exact(asked), &crs};
-  put(answer, facts, ask::Door::kProgram);
+  add_told(answer, ask::mesh_fields(), told);
+  add_told(answer, ask::answer_fields(), facts);
   return answer;
 }
 
@@ -234,7 +231,7 @@ int write_isolines(const UnstreamOptions& options, const Receiver& receiver,
   warn_of_what_is_beyond(receiver, asked, context);
   if (context.json) {
     const CrsFacts crs = crs_facts_of(metadata_of(receiver.reader()));
-    ask::Json answer = answer_of(options, receiver, refined, {}, crs, asked);
+    ask::Json answer = answer_of(options, receiver, {&refined}, crs, asked);
     answer.erase("written");
     answer["isolines"] = lines;
     print_json(answer);
@@ -297,9 +294,9 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   if (!options.out.output.empty()) warn_of_what_is_beyond(receiver, everywhere, context);
   const bool tells_frame = !options.out.output.empty() && has_frame(options.out.output);
   if (context.json) {
-    ask::Json answer = answer_of(options, receiver, refined, mesh, crs, everywhere);
-    if (tells_frame) answer["local_frame"] = frame_json(mesh.frame);
-    print_json(answer);
+    const ask::MeshAnswer told{&refined, mesh.vertices.size(), mesh.triangles.size(),
+                               tells_frame ? &mesh.frame : nullptr};
+    print_json(answer_of(options, receiver, told, crs, everywhere));
   } else if (!context.quiet) {
     print_report(receiver, refined);
     if (tells_frame) std::fprintf(stderr, "frame: %s\n", frame_text(mesh.frame).c_str());
@@ -307,25 +304,26 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_unstream(Context& context) {
-  const auto options = std::make_shared<UnstreamOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  rows.add("in", &options->inputs, "", "Streams, one after the other; - for stdin")
+ask::Parameters parameters_of(UnstreamOptions& options) {
+  ask::Parameters rows;
+  rows.add("in", &options.inputs, "", "Streams, one after the other; - for stdin")
       .spelled("IN")
       .values(1, ask::kAnyNumberOfValues)
       .required_at(ask::Door::kBoth);
   add_output(
-      rows, options->out,
+      rows, options.out,
       "The mesh to write, or with --level or --interval the layer of isolines; its extension "
       "chooses the format. None: only tell what arrived",
       false);
-  add_stream_isolines(rows, options->isolines);
-  rows.push_back(ask::memory_row(options->memory));
-  declared.run = [options, &context] { return run_unstream(*options, context); };
-  return declared;
+  add_stream_isolines(rows, options.isolines);
+  rows.push_back(ask::memory_row(options.memory));
+  return rows;
+}
+
+}  // namespace
+
+Declared declare_unstream(Context& context) {
+  return declared<UnstreamOptions>(context, run_unstream);
 }
 
 }  // namespace ptin::tools

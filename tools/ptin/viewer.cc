@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -171,18 +170,17 @@ int run_viewer(const ViewerOptions& options, const Context& context) {
   return kExitDone;
 }
 
+ask::Parameters parameters_of(ViewerOptions& options) {
+  ask::Parameters rows;
+  add_output(rows, options.out, "The folder to write into; made where it is missing", true,
+             "FOLDER");
+  rows.add("stream", &options.stream, "FILE",
+           "A stream that `ptin stream` wrote: copied beside the page, which opens it");
+  return rows;
+}
+
 }  // namespace
 
-Declared declare_viewer(Context& context) {
-  const auto options = std::make_shared<ViewerOptions>();
-  Declared declared;
-  add_output(declared.parameters, options->out,
-             "The folder to write into; made where it is missing", true, "FOLDER");
-  declared.parameters.add(
-      "stream", &options->stream, "FILE",
-      "A stream that `ptin stream` wrote: copied beside the page, which opens it");
-  declared.run = [options, &context] { return run_viewer(*options, context); };
-  return declared;
-}
+Declared declare_viewer(Context& context) { return declared<ViewerOptions>(context, run_viewer); }
 
 }  // namespace ptin::tools

@@ -29,6 +29,7 @@
 #include "tools/output/gdal_output.h"
 #include "tools/output/output_file.h"
 #include "tools/output/pending_file.h"
+#include "tools/ptin/answer_output.h"
 #include "tools/ptin/pixel_size.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/on_terrain.h"
@@ -148,43 +149,26 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
 
 void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
                     const Context& context) {
-  VectorFile file(options.out.output, options.out.overwrite,
-                  {"viewshed",
-                   wkbPoint,
-                   {{"height", VectorFile::FieldType::kReal},
-                    {"visible", VectorFile::FieldType::kFlag},
-                    {"certain", VectorFile::FieldType::kFlag}},
-                   wkt});
-  std::size_t written = 0;
-  for (const Viewshed::Target& v : seen.vertices) {
-    if (written++ % kStopInterval == 0) check_stop(context, options);
-    const VectorFile::Value values[] = {v.height, static_cast<std::int64_t>(v.visible ? 1 : 0),
-                                        static_cast<std::int64_t>(v.certain ? 1 : 0)};
-    file.add(std::make_unique<OGRPoint>(v.position.x, v.position.y), values);
-  }
-  file.publish();
-}
-
-/// Counts of targets as JSON; null where they were not asked for.
-ask::Json counts_json(bool asked, std::uint64_t visible, std::uint64_t hidden,
-                      std::uint64_t undecided) {
-  if (!asked) return nullptr;
-  return {{"visible", visible}, {"hidden", hidden}, {"undecided", undecided}};
+  write_layer(
+      options.out, {"viewshed", wkbPoint, {}, wkt},
+      ask::target_fields().told(ask::Door::kProgram, ask::As::kFeature), seen.vertices.size(),
+      [&](std::size_t i) -> const Viewshed::Target& {
+        if (i % kStopInterval == 0) check_stop(context, options);
+        return seen.vertices[i];
+      },
+      [&](std::size_t i) {
+        const MapPoint& p = seen.vertices[i].position;
+        return std::make_unique<OGRPoint>(p.x, p.y);
+      });
 }
 
 void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFile& store,
             const CrsFacts& crs, const Context& context) {
   const bool raster = is_raster(options.out.output);
   if (context.json) {
-    print_answer({{"output", options.out.output},
-                  {"eye_height", seen.eye_height},
-                  {"width", seen.width},
-                  {"height", seen.height},
-                  {"pixels", counts_json(raster, seen.visible_pixels, seen.hidden_pixels,
-                                         seen.undecided_pixels)},
-                  {"vertices", counts_json(!raster, seen.visible_vertices, seen.hidden_vertices,
-                                           seen.undecided_vertices)}},
-                 ask::facts_of(seen, store, crs));
+    ask::Json answer = {{"output", options.out.output}};
+    add_told(answer, ask::viewshed_fields(), ask::ViewshedAnswer{&seen, raster});
+    print_answer(answer, ask::facts_of(seen, store, crs));
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
     const std::uint64_t hidden = raster ? seen.hidden_pixels : seen.hidden_vertices;
@@ -230,27 +214,28 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_viewshed(Context& context) {
-  const auto options = std::make_shared<ViewshedOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, true);
-  ask::add_viewshed(rows, options->question);
-  rows.add("pixel-size", &options->pixel_size, "S",
+ask::Parameters parameters_of(ViewshedOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, true);
+  ask::add_viewshed(rows, options.question);
+  rows.add("pixel-size", &options.pixel_size, "S",
            "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, "
            "converted at the observer (default: that of the raster it was built "
            "from)");
   add_output(
-      rows, options->out,
+      rows, options.out,
       "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with `visible` "
       "and `certain` (" +
           known_vector_extensions() + ")");
   rows.push_back(
-      ask::memory_row(options->memory, "Memory for the answer, as 512M or 2G (default 4G)"));
-  declared.run = [options, &context] { return run_viewshed(*options, context); };
-  return declared;
+      ask::memory_row(options.memory, "Memory for the answer, as 512M or 2G (default 4G)"));
+  return rows;
+}
+
+}  // namespace
+
+Declared declare_viewshed(Context& context) {
+  return declared<ViewshedOptions>(context, run_viewshed);
 }
 
 }  // namespace ptin::tools

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin volume: cut and fill against a level or another terrain.
+#include "tools/ask/volume.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,8 +20,6 @@
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
-#include "tools/formats/csv_text.h"
-#include "tools/formats/number_text.h"
 #include "tools/plot/volume_plot.h"
 #include "tools/ptin/answer_output.h"
 #include "tools/ptin/query_options.h"
@@ -35,10 +34,7 @@ constexpr AnswerKinds kAnswerKinds{.layer = false, .plot = true};
 
 struct VolumeOptions {
   TerrainOptions terrain;
-  ask::Levels levels;
-  std::string against;
-  ask::RegionText region;
-  DetailRequest detail;
+  ask::VolumeQuestion question;
   int threads = 0;
   std::optional<std::uint64_t> memory;
   OutputOptions answer;
@@ -60,7 +56,7 @@ double height_scale(CrsFacts& file, const CrsFacts& other, const VolumeOptions& 
   }
   if (knows_height_unit(file) != knows_height_unit(other)) {
     warn("nothing tells the unit of the heights of " +
-             (knows_height_unit(file) ? options.against : options.terrain.file) +
+             (knows_height_unit(file) ? options.question.against : options.terrain.file) +
              "; taken to be that of the other terrain",
          context);
     if (!knows_height_unit(file)) file.vertical_unit = other.vertical_unit;
@@ -77,7 +73,7 @@ void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeO
                     ") is not that of " + options.terrain.file + " (" +
                     (file.name.empty() ? file.horizontal_unit : file.name) +
                     "); transform the source of one and build it again",
-                options.against);
+                options.question.against);
   }
   if (!file.vertical_name.empty() && !other.vertical_name.empty() &&
       file.vertical_text() != other.vertical_text()) {
@@ -85,10 +81,10 @@ void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeO
                 "its heights (" + other.vertical_name + ") do not count from where those of " +
                     options.terrain.file + " (" + file.vertical_name +
                     ") do; transform the source of one and build it again",
-                options.against);
+                options.question.against);
   }
   if (file.wkt.empty() != other.wkt.empty()) {
-    warn("the CRS of " + (file.wkt.empty() ? options.terrain.file : options.against) +
+    warn("the CRS of " + (file.wkt.empty() ? options.terrain.file : options.question.against) +
              " is unknown; taken to be that of the other terrain",
          context);
   }
@@ -98,7 +94,7 @@ VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
                          const std::optional<Region>& region, const Context& context) {
   VolumeRequest request;
   request.region = region;
-  request.detail = options.detail;
+  request.detail = options.question.detail;
   const Ground ground = ground_of(crs);
   request.ground = {ground.per_map_unit, !ground.geographic};
   // Borders move by metres where map units are degrees, and by map units elsewhere.
@@ -112,79 +108,41 @@ VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
   return request;
 }
 
-ask::Json interval_json(const CertifiedVolume& v) {
-  return {{"volume", v.value}, {"low", v.low}, {"high", v.high}};
-}
-
-/// The result of a level, or of the other terrain.
-ask::Json volumes_json(const VolumeResult& result) {
-  return {{"cut", interval_json(result.cut)},
-          {"fill", interval_json(result.fill)},
-          {"net", interval_json(result.net)},
-          {"rounding", result.rounding},
-          {"mean_difference", result.mean_difference},
-          {"area",
-           {{"surface", result.surface_area},
-            {"cut", result.cut_area},
-            {"fill", result.fill_area},
-            {"void", result.void_area},
-            {"only_file", result.only_here_area},
-            {"only_against", result.only_other_area}}}};
-}
-
-void print_answer(std::span<const VolumeResult> results, std::span<const double> levels,
-                  const VolumeOptions& options, const Terrain& terrain, const Terrain* other,
-                  const CrsFacts& crs, const std::optional<Transformed>& transformed) {
-  const VolumeResult& result = results.front();
-  ask::Json answer = {{"output", output_json(options.answer)}, {"against", nullptr}};
-  ask::AnswerFacts facts = ask::facts_of(result.certificate, result.exact, terrain.store(), crs);
-  facts.transformed = &transformed;
-  facts.cost = &result.cost;
-  put(answer, facts, ask::Door::kProgram);
-  answer["units"]["ground"] = unit_of_ground(crs);
-  if (levels.size() > 1) {
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      answer["levels"].push_back(volumes_json(results[i]));
-      answer["levels"].back()["level"] = levels[i];
-    }
-  } else {
-    answer.update(volumes_json(result));
-    answer["level"] = other == nullptr ? ask::Json(levels[0]) : ask::Json();
+ask::VolumeAnswer answer_of(std::span<const VolumeResult> results, std::span<const double> levels,
+                            const VolumeOptions& options, const Terrain* other,
+                            const CrsFacts& crs) {
+  ask::VolumeAnswer answer;
+  answer.ground_unit = unit_of_ground(crs);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    answer.rows.push_back(
+        {&results[i], other == nullptr ? std::optional(levels[i]) : std::nullopt});
   }
   if (other != nullptr) {
-    const Certificate& c = result.other_certificate;
-    answer["against"] = {{"file", options.against},
-                         {"certified_error", c.error},
-                         {"certified_deviation", c.deviation},
-                         {"border_moved_at_most", border_moved_at_most(other->store(), c.error)}};
+    const Certificate& c = results.front().other_certificate;
+    answer.against = {options.question.against, c.error, c.deviation,
+                      border_moved_at_most(other->store(), c.error)};
   }
-  print_json(answer);
+  return answer;
 }
 
-/// A row for each level: a stage-storage curve.
-std::string csv_of(std::span<const VolumeResult> results, std::span<const double> levels) {
-  std::string text =
-      "level,cut,cut_low,cut_high,fill,fill_low,fill_high,net,net_low,net_high,"
-      "surface_area,cut_area,fill_area,void_area\n";
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const VolumeResult& r = results[i];
-    append_number(text, levels[i]);
-    for (const CertifiedVolume* v : {&r.cut, &r.fill, &r.net}) {
-      for (const double number : {v->value, v->low, v->high}) append_csv_number(text, number);
-    }
-    for (const double area : {r.surface_area, r.cut_area, r.fill_area, r.void_area}) {
-      append_csv_number(text, area);
-    }
-    text += '\n';
-  }
-  return text;
+void print_volumes(const ask::VolumeAnswer& told, const VolumeOptions& options,
+                   const StoreFile& store, const CrsFacts& crs,
+                   const std::optional<Transformed>& transformed) {
+  const VolumeResult& result = *told.rows.front().result;
+  ask::AnswerFacts facts = ask::facts_of(result.certificate, result.exact, store, crs);
+  facts.transformed = &transformed;
+  facts.cost = &result.cost;
+  ask::Json answer = {{"output", output_json(options.answer)}};
+  add_told(answer, ask::volume_fields(), told);
+  print_answer(answer, facts);
 }
 
 /// The levels that are asked for: none where another terrain stands in their place.
 std::vector<double> levels_asked(const VolumeOptions& options, const StoreFacts& facts) {
   constexpr std::size_t kMost = 10'000;
-  std::vector<double> levels =
-      options.levels.given() ? ask::levels_of(options.levels, facts) : std::vector<double>{0.0};
+  std::vector<double> levels = options.question.levels.given()
+                                   ? ask::levels_of(options.question.levels, facts)
+                                   : std::vector<double>{0.0};
   if (levels.size() > kMost) {
     refuse("there are " + grouped(levels.size()) + " levels, more than " + grouped(kMost) +
                "; give a larger --interval",
@@ -196,7 +154,8 @@ std::vector<double> levels_asked(const VolumeOptions& options, const StoreFacts&
 void print_text(const VolumeResult& result, const VolumeOptions& options, const CrsFacts& crs) {
   const std::string unit = unit_of_ground(crs);
   const std::string known = plural_of(unit == "unknown" ? "unit" : unit);
-  const std::string than = options.against.empty() ? "the level" : options.against;
+  const std::string than =
+      options.question.against.empty() ? "the level" : options.question.against;
   const std::string& here = options.terrain.file;
   const auto volume = [&](const char* name, const CertifiedVolume& v, const std::string& where) {
     const double off = std::max({result.rounding, v.high - v.value, v.value - v.low});
@@ -215,9 +174,9 @@ void print_text(const VolumeResult& result, const VolumeOptions& options, const 
   std::printf("area  %s square %s: cut %s, fill %s; void %s\n", area(result.surface_area).c_str(),
               known.c_str(), area(result.cut_area).c_str(), area(result.fill_area).c_str(),
               area(result.void_area).c_str());
-  if (!options.against.empty()) {
+  if (!options.question.against.empty()) {
     std::printf("      surface in %s alone %s, in %s alone %s\n", options.terrain.file.c_str(),
-                area(result.only_here_area).c_str(), options.against.c_str(),
+                area(result.only_here_area).c_str(), options.question.against.c_str(),
                 area(result.only_other_area).c_str());
   }
   if (std::isfinite(result.mean_difference)) {
@@ -230,31 +189,32 @@ void print_text(const VolumeResult& result, const VolumeOptions& options, const 
 }
 
 int run_volume(const VolumeOptions& options, const Context& context) {
-  if (options.levels.given() != options.against.empty()) {
+  if (options.question.levels.given() != options.question.against.empty()) {
     throw Error(ErrorCode::invalid_argument,
                 "a volume is measured against --level H..., --interval D or --against OTHER; give "
                 "one of them");
   }
   const AnswerForm form = form_of(options.answer, context.json, kAnswerKinds);
-  if (!options.answer.output.empty() && !options.against.empty()) {
+  if (!options.answer.output.empty() && !options.question.against.empty()) {
     refuse("a table or a plot is of levels, and another terrain has none; leave -o out",
            options.answer.output);
   }
   const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.tolerance, context);
+  warn_of_terrain(terrain.store(), options.question.detail.tolerance, context);
   CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
   double other_height_scale = 1.0;
-  if (!options.against.empty()) {
+  if (!options.question.against.empty()) {
     TerrainOptions of_other = options.terrain;
-    of_other.file = options.against;
+    of_other.file = options.question.against;
     other = open_terrain(of_other, context);
-    warn_of_terrain(other->store(), options.detail.tolerance, context);
+    warn_of_terrain(other->store(), options.question.detail.tolerance, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
   }
-  const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs, context);
+  const AskedRegion asked =
+      region_of(options.question.region, terrain.store().facts(), crs, context);
   VolumeRequest request = request_of(options, crs, asked.region, context);
   request.other = other ? &*other : nullptr;
   request.other_height_scale = other_height_scale;
@@ -269,45 +229,40 @@ int run_volume(const VolumeOptions& options, const Context& context) {
              ": all volumes are 0; ask for another --window or --polygon",
          context);
   }
+  const ask::VolumeAnswer told =
+      answer_of(results, levels, options, other ? &*other : nullptr, crs);
   const bool is_table = results.size() > 1 || !options.answer.output.empty();
   if (form == AnswerForm::kPlot) {
     plot_volumes(options.answer.output, options.answer.overwrite, results, levels,
                  {unit_of_ground(crs), crs.vertical_unit});
   } else if (is_table) {
-    write_csv(options.answer, form, context.json, csv_of(results, levels));
+    // A row for each level: a stage-storage curve.
+    write_csv(options.answer, form, context.json,
+              table_of(ask::volume_row_fields().told(ask::Door::kProgram, ask::As::kTableRow),
+                       told.rows.size(), [&](std::size_t i) { return told.rows[i]; }));
   }
   if (context.json) {
-    print_answer(results, levels, options, terrain, other ? &*other : nullptr, crs,
-                 asked.transformed);
+    print_volumes(told, options, terrain.store(), crs, asked.transformed);
   } else if (!is_table) {
     print_text(result, options, crs);
   }
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_volume(Context& context) {
-  const auto options = std::make_shared<VolumeOptions>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, options->terrain, false);
-  ask::add_levels(rows, options->levels, "Heights; of several the answer is a table",
-                  "Every multiple of D, from the base", ask::Door::kProgram);
-  rows.add("against", &options->against, "OTHER",
-           "A second .ptin file, on any grid, in the same CRS; cut is where FILE is "
-           "above it")
-      .excluding("level interval");
-  ask::add_region(rows, options->region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
-  ask::add_detail(rows, options->detail, ", of either file; volumes come with intervals",
-                  "Measure the TINs of the N most important vertices; volumes come with intervals");
-  rows.push_back(ask::memory_row(options->memory));
-  add_answer_output(rows, options->answer, kAnswerKinds);
-  rows.push_back(ask::threads_row(options->threads,
+ask::Parameters parameters_of(VolumeOptions& options) {
+  ask::Parameters rows;
+  add_terrain(rows, options.terrain, false);
+  ask::add_volume(rows, options.question);
+  rows.push_back(ask::memory_row(options.memory));
+  add_answer_output(rows, options.answer, kAnswerKinds);
+  rows.push_back(ask::threads_row(options.threads,
                                   "Threads (default: one a processor that affinity and cgroups "
                                   "leave this process); the answer is the same for any number"));
-  declared.run = [options, &context] { return run_volume(*options, context); };
-  return declared;
+  return rows;
 }
+
+}  // namespace
+
+Declared declare_volume(Context& context) { return declared<VolumeOptions>(context, run_volume); }
 
 }  // namespace ptin::tools

@@ -44,10 +44,6 @@ LocalFrame frame_of(const StoreFacts& facts, const CrsFacts& crs) {
 
 bool has_frame(const std::string& path) { return mesh_format_of(path).make == make_stl; }
 
-nlohmann::json frame_json(const LocalFrame& frame) {
-  return {{"origin", frame.origin}, {"scale", frame.scale}};
-}
-
 std::string frame_text(const LocalFrame& frame) {
   const auto axis = [&](const char* local, const char* map, std::size_t i) {
     std::string text = std::string(local) + " = ";

@@ -26,8 +26,7 @@ void set_crs(Mesh& mesh, const CrsFacts& crs, const StoreFacts& facts);
 /// @param path  Of the output.
 /// @throws Error as mesh_format_of()
 [[nodiscard]] bool has_frame(const std::string& path);
-/// The frame as `{"origin", "scale"}`, and as a line for people.
-[[nodiscard]] nlohmann::json frame_json(const LocalFrame& frame);
+/// The frame as a line for people.
 [[nodiscard]] std::string frame_text(const LocalFrame& frame);
 
 }  // namespace ptin::tools

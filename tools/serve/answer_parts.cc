@@ -150,19 +150,33 @@ http::Response answered(const Asked& asked, std::string text, std::string_view m
   return response;
 }
 
+std::string ended(LongText& text, const Json& members) {
+  for (const auto& [name, value] : members.items()) {
+    text.add(",\"").add(name).add("\":").json(value);
+  }
+  return text.add("}\n").take();
+}
+
+void add_pair(LongText& text, const MapPoint& p) {
+  text.add("[").number(p.x).add(",").number(p.y).add("]");
+}
+
+void add_point(LongText& text, const MapPoint& p) {
+  text.add(R"({"type":"Point","coordinates":)");
+  add_pair(text, p);
+  text.add("}");
+}
+
 Places places_of(const Asked& asked, const std::string& crs) {
   return {asked.collection->crs, crs, asked.collection->bounds, asked.request.share};
 }
 
 Json certainty_json(const Asked& asked, double certified_error, double certified_deviation,
                     bool exact) {
-  Json json = Json::object();
-  put(json,
-      ask::AnswerFacts{certified_error, certified_deviation,
-                       border_moved_at_most(asked.terrain().store(), certified_error), exact,
-                       &asked.collection->crs},
-      ask::Door::kService);
-  return json;
+  return object_of(ask::answer_fields().told(ask::Door::kService, ask::As::kObject),
+                   ask::AnswerFacts{certified_error, certified_deviation,
+                                    border_moved_at_most(asked.terrain().store(), certified_error),
+                                    exact, &asked.collection->crs});
 }
 
 void check_detail(const Asked& asked, const DetailRequest& detail) {

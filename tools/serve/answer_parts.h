@@ -77,6 +77,59 @@ template <typename Result>
   return certainty_json(asked, result.certified_error, result.certified_deviation, result.exact);
 }
 
+/// The fields of a row that the service tells.
+template <typename Row>
+[[nodiscard]] ask::Fields<Row> told(const ask::Fields<Row>& fields, ask::As as) {
+  return fields.told(ask::Door::kService, as);
+}
+/// Rows as CSV.
+/// @param rows    How many there are.
+/// @param row_at  Makes one by its number.
+template <typename Row, typename RowAt>
+[[nodiscard]] std::string csv_text(const Asked& asked, const ask::Fields<Row>& fields,
+                                   std::size_t rows, const RowAt& row_at) {
+  LongText text = long_text(asked);
+  ask::add_csv(text, told(fields, ask::As::kTableRow), rows, row_at);
+  return text.take();
+}
+/// Adds the members of an object, and ends the answer.
+[[nodiscard]] std::string ended(LongText& text, const Json& members);
+/// Rows as the array "points" of an object.
+/// @param more  Its other members.
+template <typename Row, typename RowAt>
+[[nodiscard]] std::string points_text(const Asked& asked, const ask::Fields<Row>& all,
+                                      std::size_t rows, const RowAt& row_at, const Json& more) {
+  const ask::Fields<Row> fields = told(all, ask::As::kObject);
+  LongText text = long_text(asked);
+  text.add("{\"points\":[");
+  for (std::size_t i = 0; i < rows; ++i) {
+    ask::add_object(i == 0 ? text : text.add(","), fields, row_at(i));
+  }
+  return ended(text.add("]"), more);
+}
+/// Rows as features of GeoJSON.
+/// @param add_geometry  Adds the geometry of a row by its number, before its properties.
+/// @param more          Members of the collection.
+template <typename Row, typename RowAt, typename AddGeometry>
+[[nodiscard]] std::string features_text(const Asked& asked, const ask::Fields<Row>& all,
+                                        std::size_t rows, const RowAt& row_at,
+                                        const AddGeometry& add_geometry, const Json& more) {
+  const ask::Fields<Row> fields = told(all, ask::As::kFeature);
+  LongText text = long_text(asked);
+  text.add(R"({"type":"FeatureCollection","features":[)");
+  for (std::size_t i = 0; i < rows; ++i) {
+    text.add(i == 0 ? "" : ",\n").add(R"({"type":"Feature","geometry":)");
+    add_geometry(text, i);
+    text.add(",\"properties\":");
+    ask::add_object(text, fields, row_at(i));
+    text.add("}");
+  }
+  return ended(text.add("]"), more);
+}
+/// The object of GeoJSON that stands for a position: {"type":"Point","coordinates":[x,y]}.
+void add_point(LongText& text, const MapPoint& p);
+void add_pair(LongText& text, const MapPoint& p);
+
 /// Positions of the client whose CRS is `crs`.
 [[nodiscard]] Places places_of(const Asked& asked, const std::string& crs);
 

@@ -56,12 +56,82 @@ Json parameter_json(const ask::Parameter& row) {
   return json;
 }
 
+/// The type of a field as documents say it: "number or null", "array of strings".
+Json schema_of(const ask::FieldFacts& facts) {
+  const std::string type(facts.type.substr(0, facts.type.find(' ')));
+  Json schema = {{"type", type}, {"description", facts.meaning}};
+  if (!facts.unit.empty()) {
+    schema["description"] = std::string(facts.meaning) + " In " + std::string(facts.unit) + ".";
+  }
+  if (facts.type.ends_with("or null")) schema["nullable"] = true;
+  if (type != "array") return schema;
+  schema["items"] = Json::object();
+  if (const std::size_t of = facts.type.find("of "); of != std::string_view::npos) {
+    std::string item(facts.type.substr(of + 3));
+    item.pop_back();  // "strings"
+    schema["items"]["type"] = item;
+  }
+  return schema;
+}
+
+/// The schema of `a.b`, or of `a[].b`, within that of an object.
+Json& place_of(Json& object, std::string_view name) {
+  object["type"] = "object";
+  const std::size_t point = name.find('.');
+  std::string_view first = name.substr(0, point);
+  const bool is_array = first.ends_with("[]");
+  if (is_array) first.remove_suffix(2);
+  Json* place = &object["properties"][std::string(first)];
+  if (is_array) {
+    (*place)["type"] = "array";
+    place = &(*place)["items"];
+  }
+  return point == std::string_view::npos ? *place : place_of(*place, name.substr(point + 1));
+}
+
+Json schema_of(std::span<const ask::FieldFacts> fields) {
+  Json schema = {{"type", "object"}};
+  for (const ask::FieldFacts& facts : fields) place_of(schema, facts.name).update(schema_of(facts));
+  return schema;
+}
+
+/// The schema of an answer; empty: only the type of its body is told.
+Json answer_schema(const Endpoint& endpoint, std::string_view media) {
+  const bool is_collection = media == kGeoJson;
+  if ((endpoint.members.empty() && endpoint.properties.empty()) ||
+      (!is_collection && media != kJson)) {
+    return Json::object();
+  }
+  const bool has_object =
+      std::any_of(endpoint.formats.begin(), endpoint.formats.end(),
+                  [](const ask::Format& format) { return format.media == kJson; });
+  Json schema = {{"type", "object"}};
+  if (!is_collection || !has_object) schema = schema_of(endpoint.members);
+  const Json certainty =
+      schema_of(documented(ask::answer_fields(), ask::Door::kService, ask::As::kObject));
+  if (!is_collection) {
+    schema["properties"].update(certainty["properties"]);
+    return schema;
+  }
+  schema["properties"]["ptin:certainty"] = certainty;
+  schema["properties"]["type"] = {{"type", "string"}, {"enum", {"FeatureCollection"}}};
+  Json feature = {{"type", "object"}};
+  feature["properties"] = {{"type", {{"type", "string"}}},
+                           {"geometry", {{"type", "object"}}},
+                           {"properties", schema_of(endpoint.properties)}};
+  schema["properties"]["features"] = {{"type", "array"}, {"items", std::move(feature)}};
+  return schema;
+}
+
 /// Responses: 200 in each of its types, and problems.
 Json responses_of(const Endpoint& endpoint) {
   Json content = Json::object();
   for (const ask::Format& format : endpoint.formats) {
     const std::string_view media = format.media.substr(0, format.media.find("; charset"));
-    content[std::string(media)] = Json::object();
+    Json& of_media = content[std::string(media)] = Json::object();
+    if (Json schema = answer_schema(endpoint, media); !schema.empty()) {
+      of_media["schema"] = std::move(schema);
+    }
   }
   Json responses = {{"200", {{"description", endpoint.about}, {"content", std::move(content)}}},
                     {"4XX", {{"$ref", "#/components/responses/Problem"}}}};

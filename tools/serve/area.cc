@@ -264,15 +264,8 @@ http::Response answer_area(const Asked& asked) {
   request.limits = engine_limits(asked, inner.number.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
-  std::string text;
-  if (format.name == "csv") {
-    text = points_csv(asked, inner.at, result);
-  } else if (format.name == "geojson") {
-    text = points_geojson(asked, inner.at, result);
-  } else {
-    text = coverage_text(asked, places, question.names, coverage_of(grid, inner, result),
-                         certainty_of(asked, result));
-  }
+  std::string text = points_in(format, asked, places, question.names, inner.at, result,
+                               coverage_of(grid, inner, result));
   return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
                   result.exact);
 }

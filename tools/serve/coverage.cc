@@ -67,10 +67,6 @@ Json referencing_json(const Places& places) {
   return Json::array({{{"coordinates", std::move(axes)}, {"system", std::move(system)}}});
 }
 
-void add_pair(LongText& text, const MapPoint& p) {
-  text.add("[").number(p.x).add(",").number(p.y).add("]");
-}
-
 void add_domain(LongText& text, const Coverage& coverage, const Places& places) {
   text.add(R"({"type":"Domain","domainType":)");
   if (coverage.positions.empty()) {
@@ -175,40 +171,19 @@ std::string coverage_text(const Asked& asked, const Places& places,
   return text.add("},\"ptin:certainty\":").json(certainty).add("}\n").take();
 }
 
-void add_point(LongText& text, const MapPoint& p) {
-  text.add(R"({"type":"Point","coordinates":)");
-  add_pair(text, p);
-  text.add("}");
-}
-
-std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
-                           const LocateResult& result) {
-  const auto columns =
-      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kFeature);
-  LongText text = long_text(asked);
-  text.add(R"({"type":"FeatureCollection","features":[)");
-  for (std::size_t i = 0; i < client.size(); ++i) {
-    text.add(i == 0 ? R"({"type":"Feature","geometry":)" : R"(,{"type":"Feature","geometry":)");
-    add_point(text, client[i]);
-    text.add(",\"properties\":");
-    ask::add_object(text, columns, ask::LocatedRow(client[i], result.points[i], asked.facts().map));
-    text.add("}");
-  }
-  text.add("],\"ptin:certainty\":").json(certainty_of(asked, result));
-  return text.add("}\n").take();
-}
-
-std::string points_csv(const Asked& asked, std::span<const MapPoint> client,
-                       const LocateResult& result) {
-  const auto columns =
-      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kTableRow);
-  LongText text = long_text(asked);
-  ask::add_csv_heading(text, columns);
-  for (std::size_t i = 0; i < client.size(); ++i) {
-    ask::add_csv_row(text, columns,
-                     ask::LocatedRow(client[i], result.points[i], asked.facts().map));
-  }
-  return text.take();
+std::string points_in(const ask::Format& format, const Asked& asked, const Places& places,
+                      const CoverageNames& names, std::span<const MapPoint> client,
+                      const LocateResult& result, const Coverage& coverage) {
+  const auto row_at = [&](std::size_t i) {
+    return ask::LocatedRow(client[i], result.points[i], asked.facts().map);
+  };
+  const auto fields = ask::located_fields();
+  if (format.name == "csv") return csv_text(asked, fields, client.size(), row_at);
+  const Json certainty = certainty_of(asked, result);
+  if (format.name == "covjson") return coverage_text(asked, places, names, coverage, certainty);
+  return features_text(asked, fields, client.size(), row_at,
+                       [&](LongText& text, std::size_t i) { add_point(text, client[i]); },
+                       {{"ptin:certainty", certainty}});
 }
 
 }  // namespace ptin::serve

@@ -54,12 +54,10 @@ void add_coverage_rows(ask::Parameters& rows, CoverageNames& names);
                                         const CoverageNames& names, const Coverage& coverage,
                                         const Json& certainty);
 
-/// Heights at positions as GeoJSON and as CSV.
-[[nodiscard]] std::string points_geojson(const Asked& asked, std::span<const MapPoint> client,
-                                         const LocateResult& result);
-[[nodiscard]] std::string points_csv(const Asked& asked, std::span<const MapPoint> client,
-                                     const LocateResult& result);
-/// The object of GeoJSON that stands for a position: {"type":"Point","coordinates":[x,y]}.
-void add_point(LongText& text, const MapPoint& p);
+/// Heights at positions in a format: CoverageJSON, GeoJSON or CSV.
+[[nodiscard]] std::string points_in(const ask::Format& format, const Asked& asked,
+                                    const Places& places, const CoverageNames& names,
+                                    std::span<const MapPoint> client, const LocateResult& result,
+                                    const Coverage& coverage);
 
 }  // namespace ptin::serve

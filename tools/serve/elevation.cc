@@ -236,17 +236,16 @@ Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_la
 }
 
 /// What is told of a located point, with heights in metres under the names of others' services.
-Json result_json(const Elevations& found, const std::vector<MapPoint>& lon_lat, std::size_t i,
-                 const Json& nodata) {
+Json result_json(const Elevations& found, const ask::Fields<ask::LocatedRow>& fields,
+                 const std::vector<MapPoint>& lon_lat, std::size_t i, const Json& nodata) {
   constexpr std::string_view kHeight = "height", kElevation = "elevation";
   const ask::LocatedRow row(lon_lat[i], found.points[i], {});
   Json result = {{"elevation", nodata},
                  {"location", {{"lat", lon_lat[i].y}, {"lng", lon_lat[i].x}}},
                  {"dataset", found.dataset[i]}};
-  for (const auto* field :
-       ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kFeature)) {
-    std::string name(field->facts.name);
-    Json value = field->value(row);
+  for (const ask::Field<ask::LocatedRow>& field : fields) {
+    std::string name = field.facts.name;
+    Json value = field.value(row);
     if (name.starts_with(kHeight)) {
       name.replace(0, kHeight.size(), kElevation);
       if (row.point.state == PointState::kSurface) {
@@ -280,9 +279,10 @@ http::Response answer_elevation(const Asked& asked) {
   const std::vector<MapPoint> lon_lat = asked_places(asked, question);
   const Json nodata = nodata_of(question.nodata);
   const Elevations found = elevations_of(asked, lon_lat, question.error);
+  const auto fields = told(ask::located_fields(), ask::As::kFeature);
   Json results = Json::array();
   for (std::size_t i = 0; i < lon_lat.size(); ++i) {
-    Json result = result_json(found, lon_lat, i, nodata);
+    Json result = result_json(found, fields, lon_lat, i, nodata);
     results.push_back(as_features ? feature_json(std::move(result)) : std::move(result));
   }
   const Json certainty = {{"certified_error", found.certified_error},  // In metres, as all here.

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "tools/ask/field.h"
 #include "tools/ask/groups.h"
 #include "tools/http/admission.h"
 #include "tools/http/problem.h"
@@ -53,6 +54,9 @@ struct Endpoint {
   /// Gives a refusal, which is as http::Problem has it, the form that clients of this question expect;
   /// null: it stays. Whatever refuses a request of this path: the question, or the server before it.
   void (*refusal)(http::Response& refusal) = nullptr;
+  /// What its answers tell: the members of an object of JSON, or, where none is offered, of a
+  /// collection of GeoJSON; and the properties of features.
+  std::vector<ask::FieldFacts> members{}, properties{};
 };
 
 /// Every question, in the order of the documentation.

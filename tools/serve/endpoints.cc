@@ -3,6 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "tools/ask/highest.h"
+#include "tools/ask/isolines.h"
+#include "tools/ask/locate.h"
+#include "tools/ask/profile.h"
+#include "tools/ask/sight.h"
+#include "tools/ask/viewshed.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/endpoint.h"
 #include "tools/serve/questions.h"
@@ -38,56 +44,54 @@ constexpr std::array kContentMedia{ask::Format{"", "model/gltf-binary"}};
 constexpr std::array kFileMedia{ask::Format{"", "application/vnd.ptin"}};
 constexpr std::array kElevationMedia{ask::Format{"", kJson}, ask::Format{"", kGeoJson}};
 
+/// Has an endpoint tell the fields of its answers. Positions, and the rest of their rows, stand in the
+/// array `rows` of an object.
+template <typename Row>
+void add_fields(std::vector<Endpoint>& all, std::string_view name, const ask::Fields<Row>& fields,
+                const std::string& rows, ask::As as) {
+  for (Endpoint& endpoint : all) {
+    if (endpoint.name != name) continue;
+    auto& told = as == ask::As::kObject ? endpoint.members : endpoint.properties;
+    for (ask::FieldFacts& facts : documented(fields, ask::Door::kService, as, rows)) {
+      told.push_back(std::move(facts));
+    }
+  }
+}
+
+void add_all_fields(std::vector<Endpoint>& all) {
+  using ask::As;
+  for (const char* name : {"position", "area"}) {
+    add_fields(all, name, ask::located_fields(), {}, As::kFeature);
+  }
+  add_fields(all, "position", ask::located_fields(), "points[].", As::kObject);
+  add_fields(all, "trajectory", ask::profile_line_fields(), {}, As::kFeature);
+  add_fields(all, "profile", ask::profile_line_fields(), {}, As::kFeature);
+  add_fields(all, "profile", ask::profile_fields(), "points[].", As::kObject);
+  add_fields(all, "profile", ask::profile_answer_fields(), {}, As::kObject);
+  add_fields(all, "sight", ask::sight_fields(), "pairs[].", As::kObject);
+  add_fields(all, "isolines", ask::isoline_row_fields(), {}, As::kFeature);
+  add_fields(all, "highest", ask::highest_place_fields(), {}, As::kFeature);
+  add_fields(all, "highest", ask::highest_fields(), {}, As::kObject);
+  add_fields(all, "viewshed", ask::target_fields(), {}, As::kFeature);
+  add_fields(all, "viewshed", ask::viewshed_fields(), {}, As::kObject);
+}
+
 /// The parameters stand in other files.
 std::vector<Endpoint> made_table() {
+  const ask::Parameters none;
   std::vector<Endpoint> all = {
-      {"/",
-       "landing",
-       false,
-       "What there is, for people and as JSON",
-       {},
-       kLandingFormats,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_landing},
+      {"/", "landing", false, "What there is, for people and as JSON", none, kLandingFormats,
+       Lane::kPoint, Reserves::kNothing, answer_landing},
       {"/viewer/*", "viewer", false, "The viewer: /viewer/index.html?collection=ID",
        viewer_parameters(), kViewerMedia, Lane::kPoint, Reserves::kNothing, answer_viewer},
-      {"/conformance",
-       "conformance",
-       false,
-       "The standards that this service keeps",
-       {},
-       kPageFormats,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_conformance},
-      {"/api",
-       "api",
-       false,
-       "This service as OpenAPI 3.0",
-       {},
-       kApiFormats,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_api},
-      {"/collections",
-       "collections",
-       false,
-       "The terrains",
-       {},
-       kPageFormats,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_collections},
-      {"/collections/{id}",
-       "collection",
-       false,
-       "One terrain: extent, CRS, questions",
-       {},
-       kPageFormats,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_collection},
+      {"/conformance", "conformance", false, "The standards that this service keeps", none,
+       kPageFormats, Lane::kPoint, Reserves::kNothing, answer_conformance},
+      {"/api", "api", false, "This service as OpenAPI 3.0", none, kApiFormats, Lane::kPoint,
+       Reserves::kNothing, answer_api},
+      {"/collections", "collections", false, "The terrains", none, kPageFormats, Lane::kPoint,
+       Reserves::kNothing, answer_collections},
+      {"/collections/{id}", "collection", false, "One terrain: extent, CRS, questions", none,
+       kPageFormats, Lane::kPoint, Reserves::kNothing, answer_collection},
       {"/collections/{id}/position", "position", true, "Heights at positions",
        position_parameters(), kPositionFormats, Lane::kPoint, Reserves::kQuarter, answer_position},
       {"/collections/{id}/trajectory", "trajectory", true, "Heights along lines, as a coverage",
@@ -113,42 +117,14 @@ std::vector<Endpoint> made_table() {
       {"/collections/{id}/tiles/*", "tiles", false,
        "layer.json, and z/x/y.terrain: quantized-mesh 1.0, as Cesium asks", tiles_parameters(),
        kTileMedia, Lane::kTile, Reserves::kAll, answer_tiles},
-      {"/collections/{id}/tileset.json",
-       "tileset",
-       false,
-       "The terrain as 3D Tiles 1.1",
-       {},
-       kTilesetMedia,
-       Lane::kTile,
-       Reserves::kAll,
-       answer_tileset},
-      {"/collections/{id}/subtrees/*",
-       "subtree",
-       false,
-       "Which tiles there are below one",
-       {},
-       kSubtreeMedia,
-       Lane::kTile,
-       Reserves::kAll,
-       answer_subtree},
-      {"/collections/{id}/content/*",
-       "content",
-       false,
-       "A tile of 3D Tiles",
-       {},
-       kContentMedia,
-       Lane::kTile,
-       Reserves::kAll,
-       answer_content},
-      {"/collections/{id}/file",
-       "file",
-       false,
-       "The file itself, whole or by a range",
-       {},
-       kFileMedia,
-       Lane::kPoint,
-       Reserves::kNothing,
-       answer_file},
+      {"/collections/{id}/tileset.json", "tileset", false, "The terrain as 3D Tiles 1.1", none,
+       kTilesetMedia, Lane::kTile, Reserves::kAll, answer_tileset},
+      {"/collections/{id}/subtrees/*", "subtree", false, "Which tiles there are below one", none,
+       kSubtreeMedia, Lane::kTile, Reserves::kAll, answer_subtree},
+      {"/collections/{id}/content/*", "content", false, "A tile of 3D Tiles", none, kContentMedia,
+       Lane::kTile, Reserves::kAll, answer_content},
+      {"/collections/{id}/file", "file", false, "The file itself, whole or by a range", none,
+       kFileMedia, Lane::kPoint, Reserves::kNothing, answer_file},
       {"/v1/*", "elevation", true,
        "Elevations in metres, as Google's Elevation API and opentopodata answer",
        elevation_parameters(), kElevationMedia, Lane::kPoint, Reserves::kQuarter, answer_elevation,
@@ -159,6 +135,7 @@ std::vector<Endpoint> made_table() {
     if (endpoint.formats.front().name.empty()) continue;
     endpoint.parameters.push_back(ask::format_row(unread, endpoint.formats));
   }
+  add_all_fields(all);
   return all;
 }
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/facts/answers.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
 
@@ -26,15 +25,6 @@ ask::Parameters parameters_of(PeakQuestion& question) {
   return rows;
 }
 
-Json feature_of(const HeightAt& at, const Places& places, Json properties) {
-  MapPoint p = at.position;
-  places.from_terrain({&p, 1});
-  properties["height"] = at.height;
-  return {{"type", "Feature"},
-          {"geometry", {{"type", "Point"}, {"coordinates", {p.x, p.y}}}},
-          {"properties", std::move(properties)}};
-}
-
 }  // namespace
 
 ask::Parameters highest_parameters() { return described<PeakQuestion>(); }
@@ -49,24 +39,18 @@ http::Response answer_highest(const Asked& asked) {
   check_detail(asked, request.detail);
   request.limits = engine_limits(asked, request.listed * kAnswerBytesOfPlace);
   const HighestResult result = asked.terrain().highest(request);
-  Json features = Json::array();
-  if (result.state == PointState::kSurface) {
-    features.push_back(feature_of(result.point, places,
-                                  {{"rank", 1},
-                                   {"at_vertex", result.at_vertex},
-                                   {"height_min", result.height_min},
-                                   {"height_max", result.height_max}}));
-    for (std::size_t i = result.at_vertex ? 1 : 0; i < result.vertices.size(); ++i) {
-      features.push_back(
-          feature_of(result.vertices[i], places,
-                     {{"rank", i + (result.at_vertex ? 1 : 2)}, {"at_vertex", true}}));
-    }
-  }
-  const Json json = {{"type", "FeatureCollection"},
-                     {"state", tools::name_of(result.state)},
-                     {"features", std::move(features)},
-                     {"ptin:certainty", certainty_of(asked, result)}};
-  return answered(asked, text_of(json), format.media, result.cost, result.certified_error,
+  const std::vector<ask::HighestPlace> all = ask::places_of(result);
+  Json more = object_of(told(ask::highest_fields(), ask::As::kObject), ask::HighestAnswer{&result});
+  more["ptin:certainty"] = certainty_of(asked, result);
+  std::string text = features_text(
+      asked, ask::highest_place_fields(), all.size(), [&](std::size_t i) { return all[i]; },
+      [&](LongText& to, std::size_t i) {
+        MapPoint p = all[i].at.position;
+        places.from_terrain({&p, 1});
+        add_point(to, p);
+      },
+      more);
+  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
                   result.exact);
 }
 

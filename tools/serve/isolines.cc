@@ -49,29 +49,25 @@ std::vector<double> levels_of(const Asked& asked, const ask::Levels& levels) {
   return levels.interval ? levels_at(*levels.interval, levels.base, low, high) : levels.levels;
 }
 
-/// The positions of a line as arrays of JSON, in the client's CRS.
-void add_line(LongText& text, std::span<const MapPoint> points, const Places& places,
-              std::vector<MapPoint>& scratch) {
-  scratch.assign(points.begin(), points.end());
-  places.from_terrain(scratch);
-  const char* before = "[[";
-  for (const MapPoint& p : scratch) {
-    text.add(before).number(p.x).add(",").number(p.y).add("]");
-    before = ",[";
-  }
-  text.add("]");
-}
-
-void add_features(LongText& text, const Isolines& lines, const Places& places) {
-  std::vector<MapPoint> points, scratch;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const Isoline line = lines.line(i, points);
-    text.add(i == 0 ? "" : ",\n").add(R"({"type":"Feature","properties":{"elev":)");
-    text.number(lines.levels()[line.level]).add(R"(,"ring":)").truth(line.ring);
-    text.add(R"(},"geometry":{"type":"LineString","coordinates":)");
-    add_line(text, line.points, places, scratch);
-    text.add("}}");
-  }
+/// The lines as features.
+std::string text_of(const Asked& asked, const Isolines& lines, const Places& places,
+                    const Json& more) {
+  std::vector<MapPoint> points, client;
+  Isoline line;
+  const auto add_geometry = [&](LongText& text, std::size_t i) {
+    line = lines.line(i, points);
+    client.assign(line.points.begin(), line.points.end());
+    places.from_terrain(client);
+    text.add(R"({"type":"LineString","coordinates":[)");
+    for (std::size_t k = 0; k < client.size(); ++k) {
+      add_pair(k == 0 ? text : text.add(","), client[k]);
+    }
+    text.add("]}");
+  };
+  const auto row_at = [&](std::size_t) {
+    return ask::IsolineRow{0, lines.levels()[line.level], line.ring};
+  };
+  return features_text(asked, ask::isoline_row_fields(), lines.size(), row_at, add_geometry, more);
 }
 
 }  // namespace
@@ -87,23 +83,21 @@ http::Response answer_isolines(const Asked& asked) {
   check_detail(asked, request.detail);
   request.limits = engine_limits(asked);
   request.region = window_on_terrain(asked, places, question.region.window);
-  LongText text = long_text(asked);
-  text.add("{\"type\":\"FeatureCollection\",\"features\":[");
-  double certified = asked.facts().base_error, deviation = asked.facts().base_deviation;
-  bool is_exact = certified == 0;
-  QueryCost cost;
-  if (!request.levels.empty()) {
-    const Isolines lines = asked.terrain().isolines(request);
-    check_count(lines.points(), asked.options.question.vertices, "points of lines", "vertices",
-                "bbox");
-    add_features(text, lines, places);
-    certified = lines.certified_error;
-    deviation = lines.certified_deviation;
-    is_exact = lines.exact;
-    cost = lines.cost;
+  if (request.levels.empty()) {
+    const Certificate base{asked.facts().base_error, asked.facts().base_deviation};
+    const bool is_exact = base.error == 0;
+    const Json none = {
+        {"type", "FeatureCollection"},
+        {"features", Json::array()},
+        {"ptin:certainty", certainty_json(asked, base.error, base.deviation, is_exact)}};
+    return answered(asked, serve::text_of(none), format.media, {}, base.error, is_exact);
   }
-  text.add("],\"ptin:certainty\":").json(certainty_json(asked, certified, deviation, is_exact));
-  return answered(asked, text.add("}\n").take(), format.media, cost, certified, is_exact);
+  const Isolines lines = asked.terrain().isolines(request);
+  check_count(lines.points(), asked.options.question.vertices, "points of lines", "vertices",
+              "bbox");
+  return answered(asked,
+                  text_of(asked, lines, places, {{"ptin:certainty", certainty_of(asked, lines)}}),
+                  format.media, lines.cost, lines.certified_error, lines.exact);
 }
 
 }  // namespace ptin::serve

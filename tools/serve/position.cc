@@ -33,18 +33,13 @@ ask::Parameters parameters_of(PositionQuestion& q) {
 /// The same with the triangles, in the CRS of the client, for a program that shows them.
 std::string plain_json(std::span<const MapPoint> client, const LocateResult& result,
                        const Asked& asked, const Places& places) {
-  const auto columns =
-      ask::columns_of(ask::located_fields(), ask::Door::kService, ask::As::kObject);
-  LongText text = long_text(asked);
-  text.add("{\"points\":[");
-  for (std::size_t i = 0; i < client.size(); ++i) {
+  const auto row_at = [&](std::size_t i) {
     ask::LocatedRow row(client[i], result.points[i], asked.facts().map);
     if (row.point.state != PointState::kOutside) places.from_terrain(row.corners);
-    ask::add_object(i == 0 ? text : text.add(","), columns, row);
-  }
-  text.add("]");
-  ask::add_members(text, certainty_of(asked, result));
-  return text.add("}\n").take();
+    return row;
+  };
+  return points_text(asked, ask::located_fields(), client.size(), row_at,
+                     certainty_of(asked, result));
 }
 
 }  // namespace
@@ -64,18 +59,10 @@ http::Response answer_position(const Asked& asked) {
   request.limits = engine_limits(asked, at.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
-  std::string text;
-  if (format.name == "csv") {
-    text = points_csv(asked, client, result);
-  } else if (format.name == "json") {
-    text = plain_json(client, result, asked, places);
-  } else if (format.name == "geojson") {
-    text = points_geojson(asked, client, result);
-  } else {
-    const auto value = [&](std::size_t i) { return value_of(result.points[i]); };
-    text = coverage_text(asked, places, question.names, coverage_at(client, value),
-                         certainty_of(asked, result));
-  }
+  const auto value = [&](std::size_t i) { return value_of(result.points[i]); };
+  std::string text = format.name == "json" ? plain_json(client, result, asked, places)
+                                           : points_in(format, asked, places, question.names,
+                                                       client, result, coverage_at(client, value));
   return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
                   result.exact);
 }

@@ -28,27 +28,11 @@ ask::Parameters parameters_of(TrajectoryQuestion& question) {
   return rows;
 }
 
-ask::ProfileRow row_of(const AlongLines& along, std::size_t i) {
-  return {along.profile.points[i], along.client[i], along.profile.certified_deviation};
-}
-
-std::string csv_of(const AlongLines& along, const Asked& asked) {
-  const auto columns =
-      ask::columns_of(ask::profile_fields(), ask::Door::kService, ask::As::kTableRow);
-  LongText text = long_text(asked);
-  ask::add_csv_heading(text, columns);
-  for (std::size_t i = 0; i < along.client.size(); ++i) {
-    ask::add_csv_row(text, columns, row_of(along, i));
-  }
-  return text.take();
-}
-
 /// What is told of the profile as a whole.
 Json facts_of(const AlongLines& along, const Asked& asked) {
   Json facts = certainty_of(asked, along.profile);
-  put(facts, ask::profile_answer_fields(),
-      ask::ProfileAnswer{along.profile, asked.collection->crs, nullptr, along.bent_at_most},
-      ask::Door::kService);
+  put(facts, told(ask::profile_answer_fields(), ask::As::kObject),
+      ask::ProfileAnswer{along.profile, asked.collection->crs, nullptr, along.bent_at_most});
   return facts;
 }
 
@@ -56,19 +40,6 @@ Json certainty_of(const AlongLines& along, const Asked& asked) {
   Json certainty = certainty_of(asked, along.profile);
   certainty["bent_at_most"] = along.bent_at_most;
   return certainty;
-}
-
-std::string json_of(const AlongLines& along, const Asked& asked) {
-  const auto columns =
-      ask::columns_of(ask::profile_fields(), ask::Door::kService, ask::As::kObject);
-  LongText text = long_text(asked);
-  text.add("{\"points\":[");
-  for (std::size_t i = 0; i < along.client.size(); ++i) {
-    ask::add_object(i == 0 ? text : text.add(","), columns, row_of(along, i));
-  }
-  text.add("]");
-  ask::add_members(text, facts_of(along, asked));
-  return text.add("}\n").take();
 }
 
 /// The stretches of a line that have heights, as arrays of positions.
@@ -87,21 +58,18 @@ void add_stretches(LongText& text, std::span<const ProfilePoint> points,
 }
 
 std::string geojson_of(const AlongLines& along, const Asked& asked) {
-  const auto columns =
-      ask::columns_of(ask::profile_line_fields(), ask::Door::kService, ask::As::kFeature);
-  LongText text = long_text(asked);
-  text.add(R"({"type":"FeatureCollection","features":[)");
-  std::size_t begin = 0;
-  for (const std::span<const ProfilePoint> line : tools::lines_of(along.profile)) {
-    text.add(begin == 0 ? "{" : ",{").add(R"("type":"Feature","geometry":)");
+  const std::vector<std::span<const ProfilePoint>> lines = tools::lines_of(along.profile);
+  const auto add_geometry = [&](LongText& text, std::size_t i) {
+    const auto begin = static_cast<std::size_t>(lines[i].data() - along.profile.points.data());
     text.add(R"({"type":"MultiLineString","coordinates":[)");
-    add_stretches(text, line, std::span(along.client).subspan(begin, line.size()));
-    text.add(R"(]},"properties":)");
-    ask::add_object(text, columns, ask::ProfileLineRow{line, along.profile});
-    text.add("}");
-    begin += line.size();
-  }
-  return text.add("],\"ptin:certainty\":").json(certainty_of(along, asked)).add("}\n").take();
+    add_stretches(text, lines[i], std::span(along.client).subspan(begin, lines[i].size()));
+    text.add("]}");
+  };
+  return features_text(asked, ask::profile_line_fields(), lines.size(),
+                       [&](std::size_t i) {
+                         return ask::ProfileLineRow{lines[i], along.profile};
+                       },
+                       add_geometry, {{"ptin:certainty", certainty_of(along, asked)}});
 }
 
 std::string coverage_of(const AlongLines& along, const Asked& asked, const Places& places,
@@ -124,15 +92,20 @@ http::Response respond(const Asked& asked, const LinesQuestion& question,
   const ask::Format& format = format_of(asked);
   const Places places = places_of(asked, question.crs);
   const AlongLines along = walk_lines(asked, question, places);
+  const auto row_at = [&](std::size_t i) {
+    return ask::ProfileRow{along.profile.points[i], along.client[i],
+                           along.profile.certified_deviation};
+  };
   std::string text;
   if (format.name == "csv") {
-    text = csv_of(along, asked);
+    text = csv_text(asked, ask::profile_fields(), along.client.size(), row_at);
   } else if (format.name == "geojson") {
     text = geojson_of(along, asked);
   } else if (format.name == "covjson") {
     text = coverage_of(along, asked, places, names);
   } else {
-    text = json_of(along, asked);
+    text = points_text(asked, ask::profile_fields(), along.client.size(), row_at,
+                       facts_of(along, asked));
   }
   return answered(asked, std::move(text), format.media, along.profile.cost,
                   along.profile.certified_error, along.profile.exact);

@@ -131,6 +131,7 @@ http::Response answer_sight(const Asked& asked) {
       asked.terrain().sight_lines(question.request, ask::coarse_records_for(pairs.size()));
   QueryCost cost = solver.base_cost();
   const auto to_client = [&](std::span<MapPoint> at) { places.from_terrain(at); };
+  const auto fields = told(ask::sight_fields(), ask::As::kObject);
   Json results = Json::array();
   bool is_exact = true;
   double deviation = 0.0;
@@ -140,8 +141,7 @@ http::Response answer_sight(const Asked& asked) {
     cost.seconds += result.cost.seconds;
     is_exact = is_exact && result.exact;
     deviation = std::max(deviation, result.certified_deviation);
-    results.push_back(
-        ask::object_of(ask::sight_fields(), ask::SightRow(result, to_client), ask::Door::kService));
+    results.push_back(object_of(fields, ask::SightRow(result, to_client)));
   }
   const double error = certified_error_of(asked, question.request.detail);
   Json json = certainty_json(asked, error, deviation, is_exact);

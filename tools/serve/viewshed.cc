@@ -86,24 +86,17 @@ std::string bounds_text(const Viewshed& seen) {
 std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& places) {
   check_count(seen.vertices.size(), asked.options.question.vertices, "vertices", "vertices",
               "radius");
-  LongText text = long_text(asked);
-  text.add(R"({"type":"FeatureCollection","features":[)");
-  for (std::size_t i = 0; i < seen.vertices.size(); ++i) {
-    const Viewshed::Target& target = seen.vertices[i];
-    MapPoint p = target.position;
+  const auto add_geometry = [&](LongText& text, std::size_t i) {
+    MapPoint p = seen.vertices[i].position;
     places.from_terrain({&p, 1});
-    text.add(i == 0 ? R"({"type":"Feature","geometry":)" : R"(,{"type":"Feature","geometry":)");
     add_point(text, p);
-    text.add(",\"properties\":{\"height\":").number(target.height);
-    text.add(",\"visible\":").truth(target.visible).add(",\"certain\":").truth(target.certain);
-    text.add("}}");
-  }
-  text.add("],\"eye_height\":").number(seen.eye_height);
-  text.add(",\"visible\":").json(seen.visible_vertices);
-  text.add(",\"hidden\":").json(seen.hidden_vertices);
-  text.add(",\"undecided\":").json(seen.undecided_vertices).add(",\"ptin:certainty\":");
-  text.json(certainty_of(asked, seen));
-  return text.add("}\n").take();
+  };
+  Json more = object_of(told(ask::viewshed_fields(), ask::As::kObject), ask::ViewshedAnswer{&seen});
+  more["ptin:certainty"] = certainty_of(asked, seen);
+  return features_text(
+      asked, ask::target_fields(), seen.vertices.size(),
+      [&](std::size_t i) -> const Viewshed::Target& { return seen.vertices[i]; }, add_geometry,
+      more);
 }
 
 /// The raster has the terrain's own pixels: a radius that would make too many is told at once.
