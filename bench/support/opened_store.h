@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/scratch.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::bench {
 

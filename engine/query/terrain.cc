@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "engine/query/questions.h"
+
 namespace ptin {
 
 RefinedTin Terrain::refine(const RefineRequest& request) const {
@@ -11,13 +13,19 @@ RefinedTin Terrain::refine(const RefineRequest& request) const {
 
 TinParts Terrain::parts(PartRequest request) const { return TinParts(*this, std::move(request)); }
 
+MovingWindow Terrain::moving_window() const { return moving_window({}); }
+
 MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
   return MovingWindow(*this, options);
 }
 
+LocateResult Terrain::locate(std::span<const MapPoint> points) const { return locate(points, {}); }
+
 LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request) const {
   return ptin::locate(*this, points, request);
 }
+
+ProfileResult Terrain::profile(std::span<const MapPoint> line) const { return profile(line, {}); }
 
 ProfileResult Terrain::profile(std::span<const MapPoint> line,
                                const ProfileRequest& request) const {
@@ -29,6 +37,8 @@ ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
   return ptin::profile(*this, lines, request);
 }
 
+HighestResult Terrain::highest() const { return highest({}); }
+
 HighestResult Terrain::highest(const HighestRequest& request) const {
   return ptin::highest(*this, request);
 }
@@ -37,8 +47,14 @@ ClassChanges Terrain::class_changes(const ClassChangesRequest& request) const {
   return ptin::class_changes(*this, request);
 }
 
+SightResult Terrain::sight(const SightPair& pair) const { return sight(pair, {}); }
+
 SightResult Terrain::sight(const SightPair& pair, const SightRequest& request) const {
   return ptin::sight(*this, pair, request);
+}
+
+SightSolver Terrain::sight_lines(const SightRequest& request) const {
+  return SightSolver(*this, request);
 }
 
 SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records) const {
@@ -65,6 +81,8 @@ std::vector<VolumeResult> Terrain::volumes(const VolumeRequest& request,
 StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink) const {
   return write_stream(*this, request, sink);
 }
+
+HierarchyReport Terrain::check_hierarchy() const { return check_hierarchy({}); }
 
 HierarchyReport Terrain::check_hierarchy(const HierarchyRequest& request) const {
   return ptin::check_hierarchy(*this, request);

@@ -26,42 +26,50 @@
 // A MovingWindow gets its predicate and its stop token with each move. Every result tells what it
 // is certified for and what it cost.
 //
-// This header also brings what is done with results: polygons between levels
-// (isoline/isoline_bands.h), lines cut at a window (isoline/isoline_clip.h), isolines of a mesh
-// that grows (isoline/isoline_progressive.h), the receiver of a stream (stream/stream_reader.h), and
-// questions of the mesh that it received (received/received_mesh.h).
+// This header declares requests and results alone. Who asks a question includes its header too, and
+// who asks many questions.h.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "engine/query/heights/class_changes.h"
-#include "engine/query/heights/highest.h"
-#include "engine/query/heights/locate.h"
-#include "engine/query/heights/profile.h"
-#include "engine/query/isoline/isoline.h"
-#include "engine/query/isoline/isoline_bands.h"
-#include "engine/query/isoline/isoline_clip.h"
-#include "engine/query/isoline/isoline_progressive.h"
-#include "engine/query/living/tin_parts.h"
-#include "engine/query/received/received_mesh.h"
-#include "engine/query/refine/hierarchy_check.h"
-#include "engine/query/refine/moving_window.h"
-#include "engine/query/refine/refine.h"
-#include "engine/query/select/detail.h"
+#include "engine/geometry/affine.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/select/predicate.h"
-#include "engine/query/select/query_limits.h"
-#include "engine/query/sight/sight.h"
-#include "engine/query/sight/viewshed.h"
-#include "engine/query/stream/stream_reader.h"
-#include "engine/query/stream/stream_writer.h"
-#include "engine/query/volume/volume.h"
 
 namespace ptin {
+
+struct ClassChanges;
+struct ClassChangesRequest;
+struct HierarchyReport;
+struct HierarchyRequest;
+struct HighestRequest;
+struct HighestResult;
+struct IsolineRequest;
+struct LocateRequest;
+struct LocateResult;
+struct MovingWindowOptions;
+struct PartRequest;
+struct ProfileRequest;
+struct ProfileResult;
+struct RefineRequest;
+struct RefinedTin;
+struct SightPair;
+struct SightRequest;
+struct SightResult;
+struct StreamRequest;
+struct StreamSummary;
+struct Viewshed;
+struct ViewshedRequest;
+struct VolumeRequest;
+struct VolumeResult;
+class Isolines;
+class MovingWindow;
+class SightSolver;
+class TinParts;
 
 /// A terrain on disk that answers questions. A copy shares the file and costs nothing.
 /// Threads: all functions but use_index() are const and may be called at once. No question blocks
@@ -92,28 +100,33 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] TinParts parts(PartRequest request) const;
   /// A mesh that begins as T0 and follows predicates. The window shares the file and may outlive
   /// the terrain.
-  [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options = {}) const;
+  [[nodiscard]] MovingWindow moving_window() const;
+  [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options) const;
 
   /// Heights at points in map units: surface, void and outside told apart.
+  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points) const;
   [[nodiscard]] LocateResult locate(std::span<const MapPoint> points,
-                                    const LocateRequest& request = {}) const;
+                                    const LocateRequest& request) const;
   /// Heights along a polyline, with a break at every edge of the TIN.
+  [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line) const;
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
-                                      const ProfileRequest& request = {}) const;
+                                      const ProfileRequest& request) const;
   [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
-                                      const ProfileRequest& request = {}) const;
+                                      const ProfileRequest& request) const;
   /// The highest or lowest point of the terrain or of a window.
-  [[nodiscard]] HighestResult highest(const HighestRequest& request = {}) const;
+  [[nodiscard]] HighestResult highest() const;
+  [[nodiscard]] HighestResult highest(const HighestRequest& request) const;
   /// Samples that a level of detail moves from surface to void, or back.
   [[nodiscard]] ClassChanges class_changes(const ClassChangesRequest& request) const;
 
   /// Whether the ends of a line see each other.
-  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
+  [[nodiscard]] SightResult sight(const SightPair& pair) const;
+  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request) const;
   /// Sight lines of many pairs.
-  /// @param coarse_records  As for the constructor of SightSolver.
-  [[nodiscard]] SightSolver sight_lines(
-      const SightRequest& request,
-      std::uint64_t coarse_records = SightSolver::kCoarseRecords) const;
+  /// @param coarse_records  As for the constructor of SightSolver, and SightSolver::kCoarseRecords.
+  [[nodiscard]] SightSolver sight_lines(const SightRequest& request) const;
+  [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
+                                        std::uint64_t coarse_records) const;
   /// What one observer sees.
   [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
 
@@ -128,11 +141,13 @@ class Terrain : public OpenedTerrain {
 
   /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.
-  StreamSummary stream(const StreamRequest& request, const ByteSink& sink) const;
+  StreamSummary stream(const StreamRequest& request,
+                       const std::function<void(std::span<const std::byte>)>& sink) const;
 
   /// Whether the records are closed and saturated, which every question stands on: what verify
   /// looks at beside verify_store().
-  [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request = {}) const;
+  [[nodiscard]] HierarchyReport check_hierarchy() const;
+  [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request) const;
 };
 
 }  // namespace ptin

@@ -14,7 +14,7 @@
 #include "engine/construct/build.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/verify.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"

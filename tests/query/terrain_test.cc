@@ -2,8 +2,6 @@
 //
 // The one face: every question that Terrain answers is that of its sub-room, on the index in use,
 // and within the limits of its request.
-#include "engine/query/terrain.h"
-
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -16,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 
 namespace ptin {

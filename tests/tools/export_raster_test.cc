@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tests/tools/raster_reader.h"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/serve_fixture.h"
 #include "tools/facts/answers.h"
 

@@ -16,7 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <ogrsf_frmts.h>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/program.h"
 #include "tools/export/tin_samples.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 
 namespace ptin::tools {

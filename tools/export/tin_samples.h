@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/slope.h"

@@ -9,7 +9,7 @@
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/export/raster_export.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/geometry/affine.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/region/vector_input.h"
 

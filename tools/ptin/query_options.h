@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/measures.h"
 #include "tools/region/on_terrain.h"

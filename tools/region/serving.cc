@@ -7,7 +7,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/region/on_terrain.h"
 
 namespace ptin::tools {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/stop.h"
 
 namespace ptin::tools {

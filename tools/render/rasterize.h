@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/render/view.h"
 
 namespace ptin::tools {

@@ -11,7 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot_set.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/far_file.h"

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/packed_rtree.h"
 #include "storage/short_float.h"
 #include "tests/query/built_terrain.h"

@@ -15,7 +15,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"

@@ -16,7 +16,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
