@@ -61,6 +61,11 @@ set(public_headers
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
     engine/query/questions.h
+    engine/query/raster/pixel_centres.h
+    engine/query/raster/pixel_lattice.h
+    engine/query/raster/pixel_sampler.h
+    engine/query/raster/raster.h
+    engine/query/raster/surface_normal.h
     engine/query/received/received_mesh.h
     engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
@@ -90,6 +95,7 @@ set(public_headers
     engine/query/volume/plane_area.h
     engine/query/volume/volume.h
     engine/query/walk/point_state.h
+    engine/query/walk/spot.h
     engine/remote/remote_file.h
     engine/stop.h
     storage/attributes.h

@@ -17,6 +17,8 @@
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_progressive.h"
 #include "engine/query/living/tin_parts.h"
+#include "engine/query/raster/pixel_sampler.h"
+#include "engine/query/raster/raster.h"
 #include "engine/query/received/received_mesh.h"
 #include "engine/query/refine/hierarchy_check.h"
 #include "engine/query/refine/moving_window.h"

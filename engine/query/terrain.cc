@@ -37,6 +37,15 @@ ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
   return ptin::profile(*this, lines, request);
 }
 
+RasterResult Terrain::raster(const RasterRequest& request, const RasterReceiver& receive) const {
+  return ptin::raster(*this, request, receive);
+}
+
+RasterResult Terrain::raster(const RasterRequest& request, std::span<double> heights,
+                             std::span<PointState> states) const {
+  return ptin::raster(*this, request, heights, states);
+}
+
 HighestResult Terrain::highest() const { return highest({}); }
 
 HighestResult Terrain::highest(const HighestRequest& request) const {

@@ -10,6 +10,7 @@
 // | mesh that follows a region | moving_window   | MovingWindowOptions | refine/moving_window.h   |
 // | heights at points          | locate          | LocateRequest       | heights/locate.h         |
 // | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
+// | heights at pixels          | raster          | RasterRequest       | raster/raster.h          |
 // | highest or lowest point    | highest         | HighestRequest      | heights/highest.h        |
 // | what became void, surface  | class_changes   | ClassChangesRequest | heights/class_changes.h  |
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
@@ -42,6 +43,7 @@
 
 namespace ptin {
 
+enum class PointState : std::uint8_t;
 struct ClassChanges;
 struct ClassChangesRequest;
 struct HierarchyReport;
@@ -55,6 +57,9 @@ struct MovingWindowOptions;
 struct PartRequest;
 struct ProfileRequest;
 struct ProfileResult;
+struct RasterBlock;
+struct RasterRequest;
+struct RasterResult;
 struct RefineRequest;
 struct RefinedTin;
 struct SightPair;
@@ -113,6 +118,11 @@ class Terrain : public OpenedTerrain {
                                       const ProfileRequest& request) const;
   [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
                                       const ProfileRequest& request) const;
+  /// Heights at the centres of pixels, block by block, or in the caller's memory.
+  RasterResult raster(const RasterRequest& request,
+                      const std::function<void(const RasterBlock&)>& receive) const;
+  RasterResult raster(const RasterRequest& request, std::span<double> heights,
+                      std::span<PointState> states = {}) const;
   /// The highest or lowest point of the terrain or of a window.
   [[nodiscard]] HighestResult highest() const;
   [[nodiscard]] HighestResult highest(const HighestRequest& request) const;

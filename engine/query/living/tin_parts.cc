@@ -10,19 +10,6 @@
 
 namespace ptin {
 
-namespace {
-
-std::uint64_t records_above(const StoreFile& store, double tolerance) {
-  if (tolerance < 0) return store.record_count();
-  std::uint64_t records = 0;
-  for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.upper > tolerance) records += bin.records;
-  }
-  return records;
-}
-
-}  // namespace
-
 struct TinParts::Impl {
   Impl(const OpenedTerrain& of, PartRequest asked)
       : terrain(of),
