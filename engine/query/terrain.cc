@@ -32,6 +32,10 @@ ProfileResult Terrain::profile(std::span<const MapPoint> line,
   return ptin::profile(*this, line, request);
 }
 
+ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines) const {
+  return profile(lines, {});
+}
+
 ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
                                const ProfileRequest& request) const {
   return ptin::profile(*this, lines, request);

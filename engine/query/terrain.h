@@ -116,6 +116,7 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line) const;
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
                                       const ProfileRequest& request) const;
+  [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines) const;
   [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
                                       const ProfileRequest& request) const;
   /// Heights at the centres of pixels, block by block, or in the caller's memory.
