@@ -20,9 +20,9 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/questions.h"
 #include "engine/query/raster/pixel_centres.h"
 #include "engine/query/raster/pixel_normals.h"
-#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
