@@ -65,6 +65,7 @@ class TimedTasks final : public ptin::TaskDriver {
       : inputs_(inputs), options_(options), resources_(resources), out_(out) {}
 
   [[nodiscard]] bool begin(const ptin::BuildNote& note) override {
+    if (note.index.is_null()) return true;
     tell("reading");
     worker_ =
         std::make_unique<ptin::BuildWorker>(inputs_, options_, resources_, ptin::message_of(note));
@@ -72,8 +73,9 @@ class TimedTasks final : public ptin::TaskDriver {
     return true;
   }
 
-  std::uint64_t run(ptin::TaskSchedule& schedule, ptin::TaskWorker& /*worker*/,
-                    const ptin::PieceLimits& /*limits*/, const std::stop_token& stop) override {
+  std::uint64_t run(ptin::TaskSchedule& schedule, ptin::TaskWorker& worker,
+                    const ptin::TaskLimits& limits, const std::stop_token& stop) override {
+    if (!worker_) return TaskDriver::run(schedule, worker, limits, stop);  // it is being read
     std::uint64_t most_bytes = 0;
     double last = processor_seconds(), scheduling = 0.0;
     const auto lap = [&last] {
@@ -84,7 +86,7 @@ class TimedTasks final : public ptin::TaskDriver {
       const Task task = schedule.take();
       const double before = watch_.lap();
       scheduling += lap();
-      const TaskResult result = worker_->tasks().run(task, 0, stop);
+      const TaskResult result = worker_->tasks().run(task);
       const double seconds = watch_.lap();
       std::ignore = lap();
       schedule.done(task.name, result);

@@ -8,6 +8,7 @@ cmake_policy(VERSION 3.25)
 set(public_headers
     engine/construct/build.h
     engine/construct/build_observer.h
+    engine/construct/build_option_table.h
     engine/construct/build_options.h
     engine/construct/build_plan.h
     engine/construct/build_parts.h
@@ -40,6 +41,7 @@ set(public_headers
     engine/growing_array.h
     engine/large_array.h
     engine/memory_units.h
+    engine/number.h
     engine/mesh/link.h
     engine/mesh/star.h
     engine/mesh/tin.h
@@ -58,6 +60,7 @@ set(public_headers
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
     engine/query/living/grid_cell.h
+    engine/query/living/living_stars.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
     engine/query/questions.h
@@ -73,7 +76,6 @@ set(public_headers
     engine/query/refine/refine.h
     engine/query/refine/refinement.h
     engine/query/select/accounting.h
-    engine/query/select/answer_by.h
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h
@@ -108,7 +110,6 @@ set(public_headers
     storage/file/sigbus_guard.h
     storage/index.h
     storage/layout.h
-    storage/living_stars.h
     storage/page_store.h
     storage/record.h
     storage/star.h

@@ -4,6 +4,7 @@
 // them goes (engine/DESIGN.md, section 2.10).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -30,6 +31,8 @@ struct RingCorner {
   HeightBits height = 0;
   float death = kLivesOn;  ///< Error of the record whose fan the triangle belongs to.
   std::uint8_t flags = 0;
+  std::array<std::uint8_t, 3>
+      unused{};  ///< In the place of padding: builds write corners as they are.
   friend bool operator==(const RingCorner&, const RingCorner&) = default;
 };
 

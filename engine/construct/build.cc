@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "engine/construct/build_job.h"
@@ -27,12 +28,8 @@ namespace {
 void build_raster(Job& job) {
   nlohmann::json began_with = fingerprint(job);  // before the first look into the inputs
   const GdalCacheLimit cache(job.memory.gdal_cache);
-  if (job.resources.driver != nullptr) {
-    job.resources.driver->begin_reading({{}, "", "", began_with.at("inputs")});
-  }
-  const RasterSource source = RasterSource::open(
-      job.inputs, job.source_options(),
-      [&](const SourceStage& stage, StageWorker& worker) { return job.run_stage(stage, worker); });
+  std::ignore = job.begin({}, nullptr);
+  const RasterSource source = RasterSource::open(job.inputs, job.source_options(), job.run_tasks());
   job.report.source_samples = source.valid_samples();
   job.report.warnings = source.warnings();
   job.report.void_samples = source.void_samples();

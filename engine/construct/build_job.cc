@@ -8,6 +8,7 @@
 
 #include <sys/stat.h>
 
+#include "engine/construct/build_option_table.h"
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
@@ -15,7 +16,7 @@
 #include "engine/construct/process_limits.h"
 #include "engine/construct/source_files.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 
@@ -24,7 +25,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 8;
+constexpr int kTemporaryFormat = 9;
 
 /// The key of a line of the manifest: the sorted source that an earlier line names is damaged.
 constexpr const char* kIsForgotten = "source_is_damaged";
@@ -194,17 +195,27 @@ std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() con
   };
 }
 
-std::vector<std::string> Job::run_stage(const SourceStage& stage, StageWorker& worker) const {
-  const int wanted = resources.threads > 0 ? resources.threads : allowed_threads();
-  // No tile is in work yet: what is left for tiles is there for these tasks.
-  const std::uint64_t fit = memory.for_tiles(anonymous_bytes_now(), wanted) /
-                            std::max<std::uint64_t>(stage.task_bytes, 1);
-  const int threads =
-      static_cast<int>(std::clamp<std::uint64_t>(fit, 1, static_cast<std::uint64_t>(wanted)));
-  const StageLimits limits{threads, memory.sorting, resources.stop,
-                           this->stage(stage.name.c_str())};
-  return resources.driver != nullptr ? resources.driver->run_stage(stage, worker, limits)
-                                     : ptin::run_stage(stage, worker, limits);
+RunTasks Job::run_tasks() const {
+  return [this](TaskList& tasks, TaskWorker& worker) {
+    const int wanted = resources.threads > 0 ? resources.threads : allowed_threads();
+    // No tile is in work yet: what is left for tiles is there for these tasks.
+    const std::uint64_t fit =
+        memory.for_tiles(anonymous_bytes_now(), wanted) / std::max<std::uint64_t>(tasks.bytes(), 1);
+    const int threads =
+        static_cast<int>(std::clamp<std::uint64_t>(fit, 1, static_cast<std::uint64_t>(wanted)));
+    tasks.set_bytes(memory.sorting / static_cast<std::uint64_t>(threads));
+    tasks.tell([this](const StageProgress& progress) { tell(progress); });
+    TaskDriver here;
+    (resources.driver != nullptr ? *resources.driver : here)
+        .run(tasks, worker, {threads}, resources.stop);
+  };
+}
+
+bool Job::begin(const nlohmann::json& index, const Workspace* workspace) const {
+  return resources.driver == nullptr ||
+         resources.driver->begin({index, workspace == nullptr ? "" : workspace->folder(),
+                                  workspace == nullptr ? "" : workspace->temporary_folder(),
+                                  input_fingerprint(all_inputs(inputs, options))});
 }
 
 SourceOptions Job::source_options() const {
@@ -338,10 +349,7 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
                  const nlohmann::json& index) {
   StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame, job.files(),
                     workspace.folder());
-  TaskDriver* const driver = job.resources.driver;
-  if (driver != nullptr &&
-      !driver->begin({index, workspace.folder(), workspace.temporary_folder(),
-                      input_fingerprint(all_inputs(job.inputs, job.options))})) {
+  if (!job.begin(index, &workspace)) {
     job.goes_on_elsewhere = true;
     // Hours of work will be in the folder, of which its manifest does not tell: no error may remove it.
     workspace.append({{{"elsewhere", true}}});

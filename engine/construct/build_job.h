@@ -14,15 +14,15 @@
 #include "engine/construct/build.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/hierarchy/tile_bytes.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/workspace.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/construct/tiled_source.h"
 
 namespace ptin::build_internal {
@@ -63,10 +63,12 @@ struct Job {
   [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
   stages() const;
   [[nodiscard]] SourceOptions source_options() const;
-  /// Has a stage of reading done, by the driver or by threads of this process.
-  /// @throws Error as TaskDriver::run_stage()
-  [[nodiscard]] std::vector<std::string> run_stage(const SourceStage& stage,
-                                                   StageWorker& worker) const;
+  /// Has tasks of reading done, by the driver or by threads of this process.
+  [[nodiscard]] RunTasks run_tasks() const;
+  /// Tells the driver of the build (TaskDriver::begin).
+  /// @param index      index_json() of the source; null before it is read.
+  /// @param workspace  Null before there is one.
+  [[nodiscard]] bool begin(const nlohmann::json& index, const Workspace* workspace) const;
   /// Where the build's temporary files go: BuildResources::tmp, but for files that other processes
   /// read, too, which lie beside the output.
   [[nodiscard]] std::string exchange_folder() const {

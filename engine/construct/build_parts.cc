@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <fstream>
-#include <list>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -19,12 +18,11 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/tasks/await_file.h"
-#include "engine/construct/tasks/batch_order.h"
-#include "engine/construct/tasks/piece_runner.h"
 #include "engine/construct/tasks/task_driver.h"
-#include "engine/construct/tasks/task_graph.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tasks/task_schedule.h"
+#include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 #include "storage/file/checksum.h"
 
 namespace ptin {
@@ -196,61 +194,12 @@ Error damaged(const DamagedInput& damage, const BatchOrder& order, FileLayer& fi
   return damage;
 }
 
-class PartPieces final : public PieceSource {
- public:
-  PartPieces(const std::vector<TaskName>& tasks, const TaskGraph& graph, TaskResults known,
-             TaskWorker& worker)
-      : tasks_(tasks.begin(), tasks.end()),
-        graph_(graph),
-        known_(std::move(known)),
-        worker_(worker) {}
-
-  [[nodiscard]] std::optional<std::uint64_t> next_bytes() override {
-    const auto next = find_next();
-    return next == tasks_.end() ? std::nullopt : std::optional(graph_.bytes_of(*next, known_));
-  }
-  [[nodiscard]] Piece take(int thread) override {
-    const auto next = find_next();
-    const Task task = graph_.describe(*next, known_);
-    tasks_.erase(next);
-    return {task.bytes, [this, task, thread](const std::stop_token& stop) -> std::function<void()> {
-              const TaskResult result = worker_.run(task, static_cast<std::size_t>(thread), stop);
-              return [this, name = task.name, result] {
-                known_[name] = result;
-                done_[name] = result;
-              };
-            }};
-  }
-  [[nodiscard]] const TaskResults& done() const noexcept { return done_; }
-  [[nodiscard]] bool is_complete() const noexcept { return tasks_.empty(); }
-
- private:
-  /// Mostly the first: batches wait for nothing, and those above them come in an order that does.
-  [[nodiscard]] std::list<TaskName>::iterator find_next() {
-    return std::find_if(tasks_.begin(), tasks_.end(), [&](const TaskName& name) {
-      const auto inputs = graph_.inputs_of(name);
-      return std::all_of(inputs.begin(), inputs.end(), [&](const auto& input) {
-        return known_.contains(producer_of(input.first, input.second));
-      });
-    });
-  }
-
-  std::list<TaskName> tasks_;
-  const TaskGraph& graph_;
-  TaskResults known_, done_;
-  TaskWorker& worker_;
-};
-
 /// A build that ends when its source is read.
 class NoteTaker final : public TaskDriver {
  public:
   [[nodiscard]] bool begin(const BuildNote& note) override {
     note_ = message_of(note);
-    return false;
-  }
-  std::uint64_t run(TaskSchedule& /*schedule*/, TaskWorker& /*worker*/,
-                    const PieceLimits& /*limits*/, const std::stop_token& /*stop*/) override {
-    return 0;
+    return note.index.is_null();
   }
   [[nodiscard]] const std::string& note() const noexcept { return note_; }
 
@@ -265,16 +214,19 @@ class Publisher final : public TaskDriver {
       : files_(files_of(resources)), parts_(parts), patience_(resources.patience) {}
 
   [[nodiscard]] bool begin(const BuildNote& note) override {
+    if (note.index.is_null()) {
+      return true;
+    }
     for (const PartsPhase phase :
          {PartsPhase::kCollapse, PartsPhase::kJoin, PartsPhase::kTighten}) {
       require_told(files_, note.temporary, phase, parts_, patience_, told_);
     }
     return true;
   }
-  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
+  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const TaskLimits& limits,
                     const std::stop_token& stop) override {
-    schedule.take_up(std::exchange(told_, {}));
-    return threads_.run(schedule, worker, limits, stop);
+    schedule.take_up(std::exchange(told_, {}));  // of reading a raster: nothing yet
+    return TaskDriver::run(schedule, worker, limits, stop);
   }
 
  private:
@@ -282,7 +234,6 @@ class Publisher final : public TaskDriver {
   int parts_;
   std::chrono::milliseconds patience_;
   TaskResults told_;
-  ThreadDriver threads_;
 };
 
 void require_part(PartsPhase phase, int part, int parts) {
@@ -314,19 +265,30 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
                                memory.for_tiles(anonymous_bytes_now(), threads), memory.gdal_cache};
   const TaskGraph graph(worker.tree(), task_memory);
   const BatchOrder order(worker.tree());
-  PartPieces pieces(tasks_of(order, phase, part, parts), graph, std::move(known), worker.tasks());
-  const PieceLimits limits{threads, task_memory.for_tiles, [&](std::uint64_t) {
-                             if (resources.observer != nullptr) {
-                               resources.observer->give_back_memory();
-                             }
-                           }};
+  const std::vector<TaskName> names = tasks_of(order, phase, part, parts);
+  TaskList tasks(
+      names,
+      [&graph](const TaskName& name, const TaskResults& results) {
+        return graph.can_be_done(name, results) ? std::optional(graph.describe(name, results))
+                                                : std::nullopt;
+      },
+      std::move(known));
+  const TaskLimits limits{threads, task_memory.for_tiles, [&](std::uint64_t) {
+                            if (resources.observer != nullptr) {
+                              resources.observer->give_back_memory();
+                            }
+                          }};
   try {
-    run_pieces(pieces, limits, resources.stop);
+    TaskDriver().run(tasks, worker.tasks(), limits, resources.stop);
   } catch (const DamagedInput& damage) {
     throw damaged(damage, order, files, folder, parts);
   }
-  PTIN_CHECK(pieces.is_complete());
-  tell(files, folder, phase, part, pieces.done());
+  PTIN_CHECK(tasks.is_complete());
+  TaskResults done;
+  for (const TaskName& name : names) {
+    done[name] = tasks.results().at(name);
+  }
+  tell(files, folder, phase, part, done);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // A build over points: counted first, sorted into buckets, then tiles.
 #include <algorithm>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "engine/construct/build_job.h"
@@ -13,7 +14,6 @@
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_count.h"
 #include "engine/construct/points/point_source.h"
-#include "engine/construct/source_files.h"
 #include "engine/construct/tin/tin_vertices.h"
 #include "engine/error.h"
 
@@ -29,11 +29,8 @@ PointFiles point_files(const Job& job, const Workspace& workspace) {
 }
 
 PointWork work_of(const Job& job, const Workspace& workspace) {
-  return {point_files(job, workspace),
-          [&job](const SourceStage& stage, StageWorker& worker) {
-            return job.run_stage(stage, worker);
-          },
-          job.resources.stop, job.memory.sorting, job.stages()};
+  return {point_files(job, workspace), job.run_tasks(), job.resources.stop, job.memory.sorting,
+          [&job](const StageProgress& progress) { job.tell(progress); }};
 }
 
 /// Vertices of TINs are sorted before they are points.
@@ -90,12 +87,7 @@ PointBuckets sorted_points(Job& job, Workspace& workspace, ArrayFileFacts& index
     return std::move(*points);
   }
   remove_files(job.files(), buckets + "-");
-  if (job.resources.driver != nullptr) {
-    job.resources.driver->begin_reading({{},
-                                         workspace.folder(),
-                                         workspace.temporary_folder(),
-                                         input_fingerprint(all_inputs(job.inputs, job.options))});
-  }
+  std::ignore = job.begin({}, &workspace);
   PointBuckets points = [&] {
     PointSource source(job.inputs, job.source_options(), work_of(job, workspace));
     if (job.lines.want_ground()) {

@@ -4,18 +4,46 @@
 #include <algorithm>
 
 #include "engine/construct/build_job.h"
-#include "engine/construct/build_note.h"
 #include "engine/construct/memory_plan.h"
+#include "engine/construct/points/point_tasks.h"
+#include "engine/construct/raster/raster_source.h"
+#include "engine/construct/source_files.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
-#include "engine/construct/tasks/batch_order.h"
+#include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_messages.h"
-#include "engine/construct/tasks/task_worker.h"
+#include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/tile_worker.h"
 #include "engine/construct/tiled_source.h"
+#include "engine/error.h"
 
 namespace ptin {
 
 using namespace build_internal;
+
+namespace {
+
+/// @throws Error invalid_argument  this process sees other inputs than the one that directs it, or,
+///     after it has waited for them, not the folders of the build
+void require_same(const BuildNote& note, const std::vector<std::string>& inputs,
+                  const BuildOptions& options, const BuildResources& resources) {
+  for (const std::string& folder : {note.folder, note.temporary}) {
+    if (!folder.empty() && !await_file(folder, resources.patience, resources.stop)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "this process does not see the folder of the build; it must be one that all "
+                  "processes share",
+                  folder);
+    }
+  }
+  if (input_fingerprint(all_inputs(inputs, options)) != note.inputs) {
+    throw Error(ErrorCode::invalid_argument,
+                "an input is not the one that the build began with: its size or time of change "
+                "differ; build anew, or give all processes the same files",
+                inputs.empty() ? "" : inputs.front());
+  }
+}
+
+}  // namespace
 
 struct BuildWorker::Impl {
   Impl(const std::vector<std::string>& inputs, const BuildOptions& options,
@@ -23,18 +51,18 @@ struct BuildWorker::Impl {
       : resources(given),
         files(given.files != nullptr ? *given.files : FileLayer::system()),
         memory(plan_memory(given.memory_bytes, source_kind(inputs, options))),
-        cache(memory.gdal_cache),
-        source(inputs, options,
-               require_same_inputs(require_shared_folders(note, given), inputs, options).index,
-               note.temporary, files, given.stop),
-        packer(options, source.tiled().frame, files, note.folder),
-        worker({source.tiled().tree, collapse_options(options, source.tiled()),
-                source.tiled().make_starter, packer, files, note.temporary, true, given.patience},
-               [](TaskKind, std::uint64_t) {}) {
-    if (resources.observer != nullptr) {
-      resources.observer->plan(plan());
+        cache(memory.gdal_cache) {
+    require_same(note, inputs, options, given);
+    if (note.index.is_null()) {
+      open_to_read(inputs, source_options_of(options), note);
+    } else {
+      open_tiles(inputs, options, note);
     }
   }
+  void open_to_read(const std::vector<std::string>& inputs, const SourceOptions& options,
+                    const BuildNote& note);
+  void open_tiles(const std::vector<std::string>& inputs, const BuildOptions& options,
+                  const BuildNote& note);
   [[nodiscard]] BuildPlan plan() const;
   void make_room(std::uint64_t bytes) const;
 
@@ -42,14 +70,42 @@ struct BuildWorker::Impl {
   FileLayer& files;
   MemoryPlan memory;
   GdalCacheLimit cache;
-  ReadSource source;
-  StorePacker packer;
-  TaskWorker worker;
+  std::unique_ptr<ReadSource> source;  ///< Null while the source is being read.
+  std::unique_ptr<StorePacker> packer;
+  std::unique_ptr<TaskWorker> worker;
 };
+
+void BuildWorker::Impl::open_to_read(const std::vector<std::string>& inputs,
+                                     const SourceOptions& options, const BuildNote& note) {
+  if (memory.kind == InputKind::kRaster) {
+    worker = RasterSource::open_to_scan(inputs, options);
+  } else if (memory.kind == InputKind::kPoints) {
+    const auto await = [patience = resources.patience, stop = resources.stop](
+                           const std::string& path) { await_file(path, patience, stop); };
+    worker = std::make_unique<PointTasks>(inputs, options,
+                                          PointFiles{files, note.temporary, await, true});
+  } else {
+    throw Error(ErrorCode::internal, "this kind of source is read by one process");
+  }
+}
+
+void BuildWorker::Impl::open_tiles(const std::vector<std::string>& inputs,
+                                   const BuildOptions& options, const BuildNote& note) {
+  source = std::make_unique<ReadSource>(inputs, options, note.index, note.temporary, files,
+                                        resources.stop);
+  const TiledSource& tiles = source->tiled();
+  packer = std::make_unique<StorePacker>(options, tiles.frame, files, note.folder);
+  worker = std::make_unique<TileWorker>(TaskSetup{tiles.tree, collapse_options(options, tiles),
+                                                  tiles.make_starter, *packer, files,
+                                                  note.temporary, true, resources.patience});
+  if (resources.observer != nullptr) {
+    resources.observer->plan(plan());
+  }
+}
 
 /// What one task at a time takes here, the last join apart.
 BuildPlan BuildWorker::Impl::plan() const {
-  const TileTree& tree = source.tiled().tree;
+  const TileTree& tree = source->tiled().tree;
   const std::uint64_t leaf = largest_leaf(tree, {0, 0, 0});
   BuildPlan plan;
   plan.tile_side = tree.side();
@@ -76,13 +132,20 @@ BuildWorker::BuildWorker(const std::vector<std::string>& inputs, const BuildOpti
 
 BuildWorker::~BuildWorker() = default;
 
-TaskWorker& BuildWorker::tasks() noexcept { return impl_->worker; }
-const TileTree& BuildWorker::tree() const noexcept { return impl_->source.tiled().tree; }
+TaskWorker& BuildWorker::tasks() noexcept { return *impl_->worker; }
+const TileTree& BuildWorker::tree() const noexcept { return impl_->source->tiled().tree; }
 
-std::string BuildWorker::answer(const std::string& message, std::size_t thread) {
+std::string BuildWorker::answer(const std::string& message) {
   try {
-    impl_->make_room(bytes_of_task(message));
-    return answer_to(message, impl_->worker, thread, impl_->resources.stop);
+    Task task = task_in_message(message);
+    task.stop = impl_->resources.stop;
+    if (impl_->source == nullptr) {
+      task.bytes =
+          impl_->memory.sorting;  // the memory of this process, not of the one that directs
+    } else {
+      impl_->make_room(task.bytes);
+    }
+    return answer_to(task, *impl_->worker);
   } catch (...) {
     return answer_of(error_in_flight());
   }

@@ -3,7 +3,6 @@
 // Does tasks of a build that another process directs.
 #pragma once
 
-#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,9 +14,9 @@ namespace ptin {
 class TaskWorker;
 class TileTree;
 
-/// Opens the source of a build as the process that directs it did, but reads of it only what its
-/// tasks want. Both processes see the inputs, the output's folder and that of temporary files by the
-/// same names.
+/// Does the tasks of reading a source, or opens one that was read as the process that directs did, and
+/// does the tasks of its tiles; it reads of the source only what its tasks want. Both processes see
+/// the inputs, the output's folder and that of temporary files by the same names.
 class BuildWorker {
  public:
   /// @param inputs, options  As those of the build.
@@ -33,11 +32,11 @@ class BuildWorker {
   BuildWorker& operator=(const BuildWorker&) = delete;
 
   /// Does the task of a message, and tells what came of it, as a message too: its result, or what
-  /// went wrong.
-  /// Threads: several at once, each with a number of its own.
-  [[nodiscard]] std::string answer(const std::string& message, std::size_t thread = 0);
+  /// went wrong. Threads: several at once.
+  [[nodiscard]] std::string answer(const std::string& message);
 
   [[nodiscard]] TaskWorker& tasks() noexcept;
+  /// REQUIRES: the note has an index.
   [[nodiscard]] const TileTree& tree() const noexcept;
 
  private:

@@ -11,9 +11,7 @@
 
 namespace ptin {
 
-std::uint64_t default_memory() {
-  return std::min(std::uint64_t{1024} * kMiB, allowed_memory() / 4 * 3);
-}
+std::uint64_t default_memory() { return std::min(kMemoryOfParts, allowed_memory() / 4 * 3); }
 
 std::uint64_t anonymous_bytes_now() {
   std::ifstream status("/proc/self/status");

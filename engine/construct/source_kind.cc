@@ -2,9 +2,11 @@
 #include "engine/construct/source_kind.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <cpl_vsi.h>
 
+#include "engine/construct/build_option_table.h"
 #include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 
@@ -12,74 +14,35 @@ namespace ptin {
 
 namespace {
 
-const char* misfit_of_raster(const BuildOptions& o) {
-  if (o.resolution)
-    return "--resolution is for points and TINs, and this is a raster; leave it out";
-  if (!o.classes.empty()) return "--class is for LAS, and this is a raster; leave it out";
-  if (!o.columns.empty())
-    return "--columns is for points as text, and this is a raster; leave it out";
-  if (o.skip_invalid)
-    return "--skip-invalid is for points as text, and this is a raster; leave it out";
-  if (o.returns != ReturnChoice::kAll)
-    return "--returns is for LAS, and this is a raster; leave it out";
-  if (o.duplicates) return "--duplicates is for points, and this is a raster; leave it out";
-  if (o.repair) return "--repair is for TINs, and this is a raster; leave it out";
-  if (o.max_edge) return "--max-edge is for points, and this is a raster; leave it out";
-  if (!o.breaklines.empty())
-    return "--breaklines is for points, and this is a raster; leave it out";
-  if (!o.boundary.empty()) return "--boundary is for points, and this is a raster; leave it out";
-  return nullptr;
-}
-
-const char* misfit_of_points(const BuildOptions& o) {
-  return o.repair ? "--repair is for TINs, and these are points; leave it out" : nullptr;
-}
-
-const char* misfit_of_tin(const BuildOptions& o, const std::string& input) {
-  if (!o.classes.empty()) return "--class is for LAS, and this is a TIN; leave it out";
-  if (!o.columns.empty()) return "--columns is for points as text, and this is a TIN; leave it out";
-  if (o.skip_invalid)
-    return "--skip-invalid is for points as text, and this is a TIN; leave it out";
-  if (o.returns != ReturnChoice::kAll)
-    return "--returns is for LAS, and this is a TIN; leave it out";
-  if (o.duplicates && !o.repair)
-    return "--duplicates is for points, and for TINs with --repair, and this is a TIN; leave it "
-           "out";
-  if (!o.z_field.empty()) return "--z-field is for points, and this is a TIN; leave it out";
-  if (!o.layer.empty() && !may_have_surfaces(input))
-    return "--layer is for points and for the surfaces of LandXML, and this is another TIN; leave "
-           "it out";
-  if (o.bbox && !o.repair)
-    return "a TIN is not cut by --bbox; build it whole, then refine or export a window";
-  if (o.max_edge && !o.repair)
-    return "--max-edge is for points, and for TINs with --repair, and this is a TIN; leave it out";
-  if (!o.breaklines.empty() && !o.repair)
-    return "--breaklines is for points, and for TINs with --repair, and this is a TIN; leave it "
-           "out";
-  if (!o.boundary.empty() && !o.repair)
-    return "--boundary is for points, and for TINs with --repair, and this is a TIN; leave it out";
-  return nullptr;
-}
-
-/// Why an option that was given means nothing to an input of this kind; null when all do.
-const char* misfit_of(const BuildOptions& options, InputKind kind, const std::string& input) {
+/// The sets of BuildOption::inputs that an input is in, and what it is called.
+std::pair<unsigned, const char*> sets_of(InputKind kind, const std::string& input, bool repairs) {
   switch (kind) {
     case InputKind::kRaster:
-      return misfit_of_raster(options);
+      return {BuildOption::kRasters, "this is a raster"};
     case InputKind::kPoints:
-      return misfit_of_points(options);
+      return {BuildOption::kPoints, "these are points"};
     case InputKind::kTin:
       break;
   }
-  return misfit_of_tin(options, input);
+  unsigned sets = BuildOption::kTins;
+  if (repairs) {
+    sets |= BuildOption::kRepairedTins;
+  }
+  if (may_have_surfaces(input)) {
+    sets |= BuildOption::kSurfaces;
+  }
+  return {sets, "this is a TIN"};
 }
 
-/// An input that is not there is told of when it is opened.
+/// Refuses options that mean nothing to an input. One that is not there is told of when it is opened.
 void check_fit(const BuildOptions& options, InputKind kind, const std::string& input) {
-  const char* misfit = misfit_of(options, kind, input);
-  VSIStatBufL status;  // of what only GDAL knows too: archives, servers
-  if (misfit != nullptr && VSIStatL(input.c_str(), &status) == 0) {
-    throw Error(ErrorCode::invalid_argument, misfit, input);
+  const auto [sets, name] = sets_of(kind, input, options.repair);
+  for (const BuildOption& option : build_option_table()) {
+    VSIStatBufL status;  // of what only GDAL knows too: archives, servers
+    if ((option.inputs & sets) == 0 && is_given(option, options) &&
+        VSIStatL(input.c_str(), &status) == 0) {
+      throw Error(ErrorCode::invalid_argument, misfit_of(option, name), input);
+    }
   }
 }
 

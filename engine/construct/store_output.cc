@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -13,6 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/check.h"
+#include "engine/construct/build_option_table.h"
+#include "engine/construct/scratch/plain_value.h"
 #include "engine/crs/crs_facts.h"
 #include "storage/file/file_questions.h"
 #include "storage/packed_segment.h"
@@ -20,32 +21,6 @@
 namespace ptin {
 
 namespace {
-
-const char* name_of(CostModel cost) {
-  switch (cost) {
-    case CostModel::kError:
-      return "error";
-    case CostModel::kRoi:
-      return "roi";
-    case CostModel::kElevation:
-      return "elevation";
-  }
-  return "error";
-}
-
-const char* name_of(PointMerge rule) {
-  switch (rule) {
-    case PointMerge::kMean:
-      return "mean";
-    case PointMerge::kLowest:
-      return "min";
-    case PointMerge::kHighest:
-      return "max";
-    case PointMerge::kFirst:
-      return "first";
-  }
-  return "mean";
-}
 
 GridBox bounds_of(const Tin& tin) {
   GridBox bounds;
@@ -55,19 +30,6 @@ GridBox bounds_of(const Tin& tin) {
     }
   }
   return bounds;
-}
-
-/// JSON has no numbers for NaN and the infinities: they are words.
-nlohmann::json number_or_word(double value) {
-  if (std::isfinite(value)) {
-    return value;
-  }
-  return std::isnan(value) ? "nan" : (value > 0 ? "inf" : "-inf");
-}
-
-template <class T>
-nlohmann::json value_or_null(const std::optional<T>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
 nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
@@ -85,67 +47,7 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
           {"height_rounding", r.height_rounding}};
 }
 
-/// Files without their folders, as those of the source.
-void add_lines(const BuildOptions& o, nlohmann::json& json) {
-  const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) {
-      json[name] = value;
-    }
-  };
-  for (const std::string& path : o.breaklines) {
-    json["breaklines"].push_back(std::filesystem::path(path).filename().string());
-  }
-  add("breakline_layer", o.breakline_layer);
-  add("boundary", std::filesystem::path(o.boundary).filename().string());
-  add("boundary_layer", o.boundary_layer);
-}
-
 }  // namespace
-
-nlohmann::json options_json(const BuildOptions& o) {
-  nlohmann::json json{{"cost", name_of(o.cost)},
-                      {"max_error", o.max_error},
-                      {"nodata", o.nodata ? number_or_word(*o.nodata) : nlohmann::json(nullptr)},
-                      {"resolution", value_or_null(o.resolution)},
-                      {"bbox", value_or_null(o.bbox)},
-                      {"tile", value_or_null(o.tile)},
-                      {"void_slope", o.void_slope}};
-  if (o.repair) {
-    json["repair"] = true;
-  }
-  if (!o.classes.empty()) {
-    json["classes"] = o.classes;
-  }
-  if (o.returns != ReturnChoice::kAll) {
-    json["returns"] = o.returns == ReturnChoice::kFirst ? "first" : "last";
-  }
-  if (o.duplicates) {
-    json["duplicates"] = name_of(*o.duplicates);
-  }
-  if (o.max_edge) {
-    json["max_edge"] = *o.max_edge;
-  }
-  add_lines(o, json);
-  if (!o.layer.empty()) {
-    json["layer"] = o.layer;
-  }
-  if (!o.columns.empty()) {
-    json["columns"] = o.columns;
-  }
-  if (o.skip_invalid) {
-    json["skip_invalid"] = true;
-  }
-  if (!o.z_field.empty()) {
-    json["z_field"] = o.z_field;
-  }
-  if (!o.a_srs.empty()) {
-    json["a_srs"] = o.a_srs;
-  }
-  if (!o.vertical_crs.empty()) {
-    json["vertical_crs"] = o.vertical_crs;
-  }
-  return json;
-}
 
 CoarsestTin coarsest_tin(const Tin& tin) {
   CoarsestTin t0;
@@ -192,9 +94,8 @@ struct SegmentFacts {
 };
 
 /// Takes plain values from the front of bytes.
-template <class T>
+template <PlainValue T>
 std::vector<T> take(std::span<const std::byte>& bytes, std::uint64_t count) {
-  static_assert(std::is_trivially_copyable_v<T>);
   PTIN_CHECK(count <= bytes.size() / sizeof(T));
   std::vector<T> values(static_cast<std::size_t>(count));
   const auto part = bytes.first(values.size() * sizeof(T));

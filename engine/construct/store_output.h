@@ -12,7 +12,7 @@
 #include "engine/construct/build.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/stored_detail.h"
-#include "engine/construct/tasks/segment_output.h"
+#include "engine/construct/tile_tasks/segment_output.h"
 #include "engine/mesh/tin.h"
 #include "storage/store_writer.h"
 
@@ -77,9 +77,6 @@ class StoreOutput final : public SegmentOutput {
   std::uint16_t max_rank_ = 0;
   std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
 };
-
-/// The options that decide the bytes of a file, as its metadata has them.
-[[nodiscard]] nlohmann::json options_json(const BuildOptions& options);
 
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tiled_source.h"
 
+#include <nlohmann/json.hpp>
+
 #include "engine/construct/collapse/first_pass.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/tin/tin_tile.h"

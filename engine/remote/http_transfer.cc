@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
+
+#include "engine/number.h"
 
 namespace ptin {
 
@@ -41,14 +42,6 @@ bool is_header(std::string_view name, const char* wanted) {
          std::equal(name.begin(), name.end(), wanted, [](unsigned char a, unsigned char b) {
            return std::tolower(a) == std::tolower(b);
          });
-}
-
-template <class T>
-std::optional<T> number_of(std::string_view text) {
-  T value{};
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return fault == std::errc{} && end == text.data() + text.size() ? std::optional(value)
-                                                                  : std::nullopt;
 }
 
 bool may_pass(long status) {
@@ -112,7 +105,7 @@ void AnswerHead::take(std::string_view line) {
     *this = {};
     const std::size_t space = line.find(' ');
     if (space != std::string_view::npos) {
-      status = number_of<long>(line.substr(space + 1, 3)).value_or(0);
+      status = parse_number<long>(line.substr(space + 1, 3)).value_or(0);
     }
     return;
   }
@@ -127,16 +120,16 @@ void AnswerHead::take(std::string_view line) {
   } else if (is_header(name, "content-encoding")) {
     encoding = value;
   } else if (is_header(name, "retry-after")) {
-    retry_after = number_of<double>(value);
+    retry_after = parse_number<double>(value);
   } else if (is_header(name, "content-range") && value.starts_with("bytes ")) {
     const std::string_view range = trimmed(value.substr(6));
     const std::size_t dash = range.find('-');
     const std::size_t slash = range.find('/');
     if (slash == std::string_view::npos) return;
-    total = number_of<std::uint64_t>(trimmed(range.substr(slash + 1)));
+    total = parse_number<std::uint64_t>(trimmed(range.substr(slash + 1)));
     if (dash == std::string_view::npos || dash > slash) return;
-    first = number_of<std::uint64_t>(trimmed(range.substr(0, dash)));
-    last = number_of<std::uint64_t>(trimmed(range.substr(dash + 1, slash - dash - 1)));
+    first = parse_number<std::uint64_t>(trimmed(range.substr(0, dash)));
+    last = parse_number<std::uint64_t>(trimmed(range.substr(dash + 1, slash - dash - 1)));
   }
 }
 

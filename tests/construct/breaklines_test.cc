@@ -18,6 +18,7 @@
 #include "storage/verify.h"
 #include "tests/construct/line_sets.h"
 #include "tests/construct/made_raster.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -219,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(Breaklines, EveryTile, testing::Values(std::nullopt, 24
                          });
 
 TEST(Breaklines, TilesAndThreadsGiveOneTin) {
-  for (const bool boundary : {false, true}) {
+  for (const bool boundary : test::some_of({false, true})) {
     BreaklineBuild source(boundary);
     const std::string one = source.run("one.ptin", std::nullopt);
     const std::string many = source.run("many.ptin", 8);

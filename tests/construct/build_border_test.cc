@@ -17,6 +17,7 @@
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/test_terrain.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -87,7 +88,7 @@ void expect_border_kept(const Terrain& terrain, const std::string& name) {
   source.name = name;
   source.slope = terrain.store().facts().map.step_x;
   source.full = terrain.refine({}).tin;
-  for (const double tolerance : {0.0, 2.0, 4.0, 7.0, 9.0, 12.0, 20.0, 30.0, 40.0}) {
+  for (const double tolerance : test::some_of({0.0, 2.0, 4.0, 7.0, 9.0, 12.0, 20.0, 30.0, 40.0})) {
     RefineRequest request;
     request.detail.tolerance = tolerance;
     const RefinedTin level = terrain.refine(request);
@@ -97,7 +98,7 @@ void expect_border_kept(const Terrain& terrain, const std::string& name) {
 }
 
 TEST(BuildOverTiles, KeepsTheBorderOfPointsAndOfTins) {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : test::some_of(shapes())) {
     const oracle::ScratchFolder folder;
     const std::string points = made_points(shape, folder.file("points.xyz"));
     for (const std::int64_t tile : {6, 256}) {

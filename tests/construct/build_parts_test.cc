@@ -15,7 +15,7 @@
 #include "engine/construct/tasks/task_messages.h"
 #include "tests/construct/hierarchy_fixture.h"
 #include "tests/construct/resume_fixture.h"
-#include "tests/construct/tasks/damaging_driver.h"
+#include "tests/construct/tile_tasks/damaging_driver.h"
 #include "tests/support/share_of_cases.h"
 
 namespace ptin {
@@ -96,7 +96,7 @@ bool says(const std::string& message, const std::string& words) {
 class BuildParts : public testing::TestWithParam<SourceKind> {};
 
 TEST_P(BuildParts, GiveTheSameBytesWhateverTheirNumberAndOrder) {
-  for (const int parts : {1, 3, 16}) {  // there are four batches of the raster
+  for (const int parts : test::some_of({1, 3, 16})) {  // there are four batches of the raster
     const InterruptibleBuild of(GetParam());
     InParts in(of, parts);
     in.phase(PartsPhase::kCollapse, 7);
@@ -149,7 +149,7 @@ TEST(BuildPart, ThatMeetsADamagedSourceSaysThatItIsToBePlannedAgain) {
 
 /// Whatever it had written, what it did not tell does not count.
 TEST(BuildPart, ThatDiedIsDoneAnew) {
-  for (const int calls : {1, 2, 5, 9, 20, 33}) {
+  for (const int calls : test::some_of({1, 2, 5, 9, 20, 33})) {
     const InterruptibleBuild of;
     InParts in(of, 3);
     BuildResources resources = in.resources();
@@ -196,7 +196,7 @@ TEST(BuildPart, ThatMeetsDamageNamesTheOneToDoAgain) {
       {"part-join-0", PartsPhase::kTighten, "part 0 of the phase join"},
   };
   for (const Case& c : test::some_of(cases)) {
-    for (const Damage how : {Damage::kFlipped, Damage::kCut}) {
+    for (const Damage how : test::some_of({Damage::kFlipped, Damage::kCut})) {
       SCOPED_TRACE(c.file);
       const InterruptibleBuild of;
       InParts in(of, 4);

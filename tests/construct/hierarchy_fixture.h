@@ -17,7 +17,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/construct/tasks/segment_output.h"
+#include "engine/construct/tile_tasks/segment_output.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin::test {

@@ -132,15 +132,16 @@ PointSet read_points(const std::vector<std::string>& paths, const SourceOptions&
   const PointFiles files{FileLayer::system(), folder.path()};
   PointTasks tasks(paths, options, files);
   const ReadingPlan plan{0, cut_into_portions(paths, options)};
-  const std::vector<std::string> told =
-      run_told(1 << 20, stop, [&](const char*, std::uint64_t done, std::uint64_t total) {
-        if (progress) {
-          progress(done, total);
-        }
-      })(tasks.reading(plan), tasks);
+  TaskList reading = tasks.reading(plan);
+  run_told(1 << 20, stop, [&](const StageProgress& told) {
+    if (progress) {
+      progress(told.done, told.total);
+    }
+  })(reading, tasks);
   std::vector<SpooledPortion> portions;
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    portions.push_back({plan.portions[i], i, PointTasks::portion_in(told[i]).value()});
+  for (const auto& [name, result] : reading.results()) {
+    const std::size_t i = number_of(name);
+    portions.push_back({plan.portions[i], i, result.facts(TileFile::kIndex)});
   }
   const PointReading raw = join_portions(paths, options, files, portions);
   const PointGrid grid = grid_with_lines(raw, options);

@@ -9,31 +9,18 @@
 #include <vector>
 
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_source.h"
 #include "storage/file/file_layer.h"
 #include "tests/construct/made_raster.h"
+#include "tests/construct/task_runs.h"
 
 namespace ptin {
 
-using ToldOfPoints = std::function<void(const char* stage, std::uint64_t, std::uint64_t)>;
-
-/// Does the tasks of all stages one after the other, each in so many bytes.
-inline RunStage run_told(std::uint64_t memory, const std::stop_token& stop = {},
-                         const ToldOfPoints& told = {}) {
-  return [=](const SourceStage& stage, StageWorker& worker) {
-    std::vector<std::string> results;
-    for (std::size_t i = 0; i < stage.sizes.size(); ++i) {
-      const auto progress = [&](std::uint64_t done) {
-        if (told) {
-          told(stage.name.c_str(), done, stage.sizes[i]);
-        }
-      };
-      results.push_back(worker.run({stage.name, i, stage.facts, memory, stop, progress}));
-    }
-    return results;
-  };
+/// Does all tasks one after the other, each in so many bytes.
+inline RunTasks run_told(std::uint64_t memory, const std::stop_token& stop = {},
+                         const std::function<void(const StageProgress&)>& told = {}) {
+  return test::on_threads(1, memory, stop, told);
 }
 
 /// Sorting that is shared out finely, and sorts on disk what does not fit into what it is given.

@@ -5,8 +5,11 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <initializer_list>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace ptin::test {
@@ -17,14 +20,15 @@ inline bool wants_all_cases() { return std::getenv("PTIN_ALL_CASES") != nullptr;
 /// `n`: look at each n-th case, or at an n-th of them. 1 where all are asked for.
 inline int share_of_cases(int n) { return wants_all_cases() ? 1 : n; }
 
-/// All cases; under the sanitizers, where each takes four times as long, every second one, and the last.
-/// Faults of memory and of numbers show in those; `release` looks at each.
+/// All cases; under the sanitizers, where each takes four times as long, every `n`-th one up to the last:
+/// at least that one, where there is any. Faults of memory and of numbers show in those; `release` looks
+/// at each.
 template <class Case>
-std::vector<Case> some_of(std::vector<Case> cases) {
+std::vector<Case> some_of(std::vector<Case> cases, [[maybe_unused]] std::size_t n = 2) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  if (!wants_all_cases()) {
+  if (!wants_all_cases() && !cases.empty()) {
     std::vector<Case> some;
-    for (std::size_t i = (cases.size() + 1) % 2; i < cases.size(); i += 2) {
+    for (std::size_t i = (cases.size() - 1) % n; i < cases.size(); i += n) {
       some.push_back(cases[i]);
     }
     return some;
@@ -33,12 +37,18 @@ std::vector<Case> some_of(std::vector<Case> cases) {
   return cases;
 }
 template <class Case>
-std::vector<Case> some_of(std::initializer_list<Case> cases) {
-  return some_of(std::vector<Case>(cases));
+std::vector<Case> some_of(std::initializer_list<Case> cases, std::size_t n = 2) {
+  return some_of(std::vector<Case>(cases), n);
 }
 template <class Case, std::size_t kCount>
-std::vector<Case> some_of(const std::array<Case, kCount>& cases) {
-  return some_of(std::vector<Case>(cases.begin(), cases.end()));
+std::vector<Case> some_of(const std::array<Case, kCount>& cases, std::size_t n = 2) {
+  return some_of(std::vector<Case>(cases.begin(), cases.end()), n);
+}
+/// Some of the numbers 1 to `count`: seeds, say.
+inline std::vector<std::uint64_t> some_of_first(std::uint64_t count, std::size_t n = 2) {
+  std::vector<std::uint64_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), std::uint64_t{1});
+  return some_of(std::move(numbers), n);
 }
 
 }  // namespace ptin::test

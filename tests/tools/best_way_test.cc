@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tools/ptin/bench_report.h"
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -60,7 +61,7 @@ class NoSurface : public ::testing::Test {
 
 TEST_F(NoSurface, BuildAndEveryQuestionWarn) {
   using Pixels = std::vector<std::array<int, 2>>;
-  for (const Pixels& pixels : {Pixels{}, Pixels{{5, 5}}, Pixels{{5, 5}, {12, 9}}}) {
+  for (const Pixels& pixels : test::some_of({Pixels{}, Pixels{{5, 5}}, Pixels{{5, 5}, {12, 9}}})) {
     const Outcome built = build(pixels);
     EXPECT_EQ(built.status, 0);
     EXPECT_TRUE(has(built.err, store() + " " + kNoSurface)) << built.err;

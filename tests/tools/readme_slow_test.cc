@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The commands that the README shows, on a small terrain: they must do what stands there.
+// The commands that README.md and tools/API.md show, on a small terrain: they must do what stands
+// there.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -19,16 +20,16 @@ using testing::spawn_ptin;
 using testing::spawn_ptin_until;
 using testing::TestFolder;
 
-/// The words of the lines that begin "$ ptin", without comments; quotes are not used in what is
-/// run.
-std::vector<std::vector<std::string>> commands_of_readme() {
-  std::ifstream readme(PTIN_TEST_DATA "/../../README.md");
+/// The words of the document's lines that begin "$ ptin", without comments; quotes are not used in
+/// what is run.
+std::vector<std::vector<std::string>> commands_of(const std::string& document) {
+  std::ifstream text(PTIN_TEST_DATA "/../../" + document);
   std::vector<std::vector<std::string>> commands;
-  for (std::string line; std::getline(readme, line);) {
+  for (std::string line; std::getline(text, line);) {
     if (!line.starts_with("$ ptin ")) continue;
-    std::istringstream text(line.substr(7, line.find('#') - 7));
+    std::istringstream command(line.substr(7, line.find('#') - 7));
     std::vector<std::string> words;
-    for (std::string word; text >> word;) words.push_back(word);
+    for (std::string word; command >> word;) words.push_back(word);
     commands.push_back(words);
   }
   return commands;
@@ -54,8 +55,12 @@ TEST(Readme, CommandsRun) {
           "urn:ogc:def:crs:EPSG::32611"}}, "features": [{"type": "Feature", "properties": {},
           "geometry": {"type": "LineString", "coordinates": [[381000, 3803000], [382000, 3803500]]}}]})");
   std::filesystem::current_path(folder.path());
+  std::vector<std::vector<std::string>> commands = commands_of("README.md");
+  EXPECT_EQ(commands.size(), 3U);
+  const auto questions = commands_of("tools/API.md");
+  commands.insert(commands.end(), questions.begin(), questions.end());
   int run = 0;
-  for (std::vector<std::string> words : commands_of_readme()) {
+  for (std::vector<std::string> words : commands) {
     // Pipes over ssh, a mosaic of hundreds of files, a layer and web servers are not here.
     if (has_word(words, "|") || has_word(words, "huge.vrt") || has_word(words, "wells.gpkg") ||
         has_url(words))
@@ -72,7 +77,7 @@ TEST(Readme, CommandsRun) {
     ++run;
   }
   std::filesystem::current_path(before);
-  EXPECT_GE(run, 13);
+  EXPECT_GE(run, 21);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/query/questions.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -220,7 +221,8 @@ TEST_F(SlopeExport, IsOfTheTrianglesThatHoldTheCentre) {
   };
   const std::string store = store_of(recipe);
   for (const std::vector<std::string>& level : {std::vector<std::string>{}, {"--error", "8"}}) {
-    for (const char* size : {"32", "16", "20"}) {  // on vertices and edges; also within
+    for (const char* size :
+         test::some_of({"32", "16", "20"})) {  // on vertices and edges; also within
       std::vector<std::string> more = {"--what", "slope", "--pixel-size", size};
       more.insert(more.end(), level.begin(), level.end());
       const Read slopes = exported(store, more);
@@ -279,7 +281,7 @@ TEST_F(SlopeExport, IsOverGroundInDegreesAndFeet) {
 
 TEST_F(SlopeExport, DoesNotDependOnMemoryOrWindows) {
   const std::string store = built(folder_, "coast_257.tif");
-  for (const char* what : {"slope", "aspect", "hillshade"}) {
+  for (const char* what : test::some_of({"slope", "aspect", "hillshade"})) {
     const Read whole = exported(store, {"--what", what});
     const std::string bytes = testing::read_file(file("o.tif"));
     static_cast<void>(exported(store, {"--what", what, "--memory", "32M"}));

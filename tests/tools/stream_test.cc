@@ -138,7 +138,7 @@ TEST_F(StreamCli, TakesUpADeltaThatWasCut) {
   answer({"stream", t, "--error", "5", "-o", file("a.pts")});
   answer({"stream", t, "--error", "1", "--have-error", "5", "-o", file("b.pts")});
   const std::string delta = read_file(file("b.pts"));
-  for (const std::size_t cut : {std::size_t{0}, std::size_t{7}, delta.size() / 2}) {
+  for (const std::size_t cut : test::some_of({std::size_t{0}, std::size_t{7}, delta.size() / 2})) {
     write_file(file("cut.pts"), delta.substr(0, cut));
     const json part = answer({"unstream", file("a.pts"), file("cut.pts")});
     answer({"stream", t, "--have", part.at("have").dump(), "-o", file("rest.pts"), "--overwrite"});

@@ -140,7 +140,8 @@ std::vector<std::string> tiled_terrains(const TestFolder& folder) {
   for (const Make make : test::some_of<Make>(
            {[](const TestFolder& f) { return built(f, "coast_257.tif"); },
             [](const TestFolder& f) { return built(f, "mountains_257.tif"); }, built_with_holes,
-            built_in_feet, built_across_180, built_arctic, built_wide})) {
+            built_in_feet, built_across_180, built_arctic, built_wide},
+           3)) {
     paths.push_back(make(folder));
   }
   return paths;

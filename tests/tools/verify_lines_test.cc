@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -71,7 +72,7 @@ TEST_F(VerifyLines, FindsEveryLineWithinTheErrors) {
   write_file(lines(), csv({"LINESTRING Z (20.25 30.5 90,380.75 310.5 70.25)",
                            "LINESTRING Z (20.25 250 84,150.125 20 85.93)",  // crosses at its height
                            "LINESTRING Z (200 60 40,200 110 40,260 110 40,200 60 40)"}));
-  for (const bool with_area : {false, true}) {
+  for (const bool with_area : test::some_of({false, true})) {
     SCOPED_TRACE(with_area);
     std::vector<std::string> options = {"--breaklines", lines()};
     if (with_area) {
@@ -129,6 +130,16 @@ TEST_F(VerifyLines, AgreesOnCrossingsAtHalfAStep) {
   ASSERT_EQ(build({"--breaklines", lines()}).status, 0);
   const Outcome verified = verify({"--breaklines", lines()});
   EXPECT_EQ(verified.status, 0) << verified.out;
+}
+
+/// A resolution counts from 0 in doubles, in which 108.35 is 1083 steps of 0.1 and no more.
+TEST_F(VerifyLines, AgreesOnVerticesBetweenTwoStepsOfAResolution) {
+  write_file(lines(), csv({"LINESTRING Z (51.35 52.25 9,108.35 96.55 4)"}));
+  for (const char* resolution : {"0.1", "0.5"}) {
+    ASSERT_EQ(build({"--breaklines", lines(), "--resolution", resolution}).status, 0);
+    const Outcome verified = verify({"--breaklines", lines()});
+    EXPECT_EQ(verified.status, 0) << verified.out;
+  }
 }
 
 TEST_F(VerifyLines, IsForPoints) {

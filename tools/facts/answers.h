@@ -3,9 +3,7 @@
 // The words of answers, the same in text and JSON.
 #pragma once
 
-#include <cmath>
-
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
@@ -13,20 +11,14 @@
 
 namespace ptin::tools {
 
-[[nodiscard]] inline nlohmann::json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
+/// Null where the value is not finite.
+[[nodiscard]] nlohmann::json number_or_null(double value);
 
 /// How far the border of voids may have moved in an answer; null where nothing bounds it.
-[[nodiscard]] inline nlohmann::json border_move_json(const StoreFile& store,
-                                                     double certified_error) {
-  return number_or_null(border_moved_at_most(store, certified_error));
-}
+[[nodiscard]] nlohmann::json border_move_json(const StoreFile& store, double certified_error);
 
 /// The object `units` of every answer.
-[[nodiscard]] inline nlohmann::json units_json(const CrsFacts& crs) {
-  return {{"horizontal", crs.horizontal_unit}, {"height", crs.vertical_unit}};
-}
+[[nodiscard]] nlohmann::json units_json(const CrsFacts& crs);
 
 [[nodiscard]] constexpr const char* name_of(PointState s) noexcept {
   return s == PointState::kSurface ? "surface" : (s == PointState::kVoid ? "void" : "outside");

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "engine/error.h"
+#include "engine/number.h"
 
 namespace ptin::tools {
 
@@ -140,23 +141,18 @@ std::string exact_number(double value) {
 }
 
 std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
-  std::size_t used = 0;
-  double value = -1.0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = std::string::npos;
-  }
+  std::string_view rest = text;
+  const double value = take_number<double>(rest).value_or(-1.0);
   double factor = 1.0;
-  if (used != std::string::npos && used < text.size()) {
+  if (!rest.empty()) {
     const std::string suffixes = "KMGT";
-    const std::size_t place = suffixes.find(static_cast<char>(std::toupper(text[used])));
-    const std::string rest = text.substr(used + 1);
+    const std::size_t place = suffixes.find(static_cast<char>(std::toupper(rest.front())));
+    rest.remove_prefix(1);
     factor = place == std::string::npos || !(rest.empty() || rest == "B" || rest == "iB")
                  ? -1.0
                  : std::pow(1024.0, static_cast<double>(place + 1));
   }
-  if (used == std::string::npos || !(value > 0) || factor < 0 || value * factor > 1e18) {
+  if (!(value > 0) || factor < 0 || value * factor > 1e18) {
     throw Error(ErrorCode::invalid_argument,
                 std::string("not a size: ").append(text).append("; write it as 512M or 2G"),
                 option);

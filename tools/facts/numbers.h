@@ -4,12 +4,12 @@
 // what they say.
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
+
+#include "engine/number.h"
 
 namespace ptin::tools {
 
@@ -22,45 +22,15 @@ namespace ptin::tools {
           ""};
 }
 
-/// Which real numbers mean something.
-enum class NumberRange : std::uint8_t {
-  kFinite,
-  kNotNegative,  ///< Finite, and no less than 0.
-  kPositive,     ///< Finite, and above 0.
-  kTolerance,    ///< No less than 0; infinite is as coarse as it can be.
-};
-
-[[nodiscard]] inline bool is_in(NumberRange range, double number) noexcept {
-  switch (range) {
-    case NumberRange::kNotNegative:
-      return std::isfinite(number) && number >= 0;
-    case NumberRange::kPositive:
-      return std::isfinite(number) && number > 0;
-    case NumberRange::kTolerance:
-      return number >= 0;
-    default:
-      return std::isfinite(number);
-  }
-}
-
-/// "a finite number > 0".
-[[nodiscard]] inline std::string words_of(NumberRange range) {
-  constexpr const char* kWords[] = {"a finite number", "a finite number >= 0",
-                                    "a finite number > 0", "a number >= 0"};
-  return kWords[static_cast<std::size_t>(range)];
-}
-
 /// Refuses a number beyond the range: "--level: must be a finite number, in the height's unit; nan is
 /// none". What is no number CLI11 refuses.
 /// @param unit  "in map units"; may be empty.
 [[nodiscard]] inline CLI::Validator numbers(NumberRange range, const std::string& unit) {
   return {[range, unit](const std::string& text) {
-            char* end = nullptr;
-            const double number = std::strtod(text.c_str(), &end);
-            const bool is_number = end != text.c_str() && *end == '\0';
-            if (!is_number || is_in(range, number)) return std::string();
-            return "must be " + words_of(range) + (unit.empty() ? "" : ", " + unit) + "; " + text +
-                   " is none";
+            const std::optional<double> number = parse_number<double>(text);
+            if (!number || is_in(range, *number)) return std::string();
+            return std::string("must be ") + words_of(range) + (unit.empty() ? "" : ", " + unit) +
+                   "; " + text + " is none";
           },
           ""};
 }

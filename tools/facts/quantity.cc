@@ -2,12 +2,11 @@
 #include "tools/facts/quantity.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
-#include <system_error>
 
 #include "engine/crs/height_unit.h"
+#include "engine/number.h"
 
 namespace ptin::tools {
 
@@ -20,12 +19,11 @@ constexpr const char* kLengthUnits[] = {"mm", "cm", "m", "km", "in", "ft", "us-f
 
 std::optional<Quantity> quantity_of(const std::string& text) {
   Quantity quantity;
-  const char* const end = text.data() + text.size();
-  const char* begin = text.data();
-  if (text.starts_with('+')) ++begin;
-  const auto [rest, fault] = std::from_chars(begin, end, quantity.number);
-  if (fault != std::errc() || !std::isfinite(quantity.number)) return std::nullopt;
-  quantity.unit.assign(rest, end);
+  std::string_view rest = text;
+  const std::optional<double> number = take_number<double>(rest);
+  if (!number || !std::isfinite(*number)) return std::nullopt;
+  quantity.number = *number;
+  quantity.unit = rest;
   quantity.unit.erase(0, quantity.unit.find_first_not_of(' '));
   return quantity;
 }

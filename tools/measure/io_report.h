@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/memory_units.h"
 #include "storage/file/io_counters.h"
 #include "tools/measure/device_speed.h"
 #include "tools/measure/quantiles.h"
@@ -27,7 +28,7 @@ struct IoRequest {
   std::uint64_t most_times = 200;   ///< Of each question by each way; >= 1.
   int most_threads = 1;             ///< >= 1.
   std::optional<double> tolerance;  ///< As DetailRequest::tolerance, of every question.
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  ///< Of a question, and of the second index.
+  std::uint64_t memory_bytes = kMemoryOfQuestion;  ///< Of a question, and of the second index.
   /// Where the second index is for as long as it is measured. Empty: beside the file.
   std::string temporary_folder;
   std::stop_token stop;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/answer_output.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "engine/error.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/file_name.h"

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/sigbus_guard.h"

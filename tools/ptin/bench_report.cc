@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/facts/human.h"
 #include "tools/measure/best_way.h"
 

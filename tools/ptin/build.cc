@@ -45,7 +45,6 @@ void check_command(BuildCommand& command) {
     throw Error(ErrorCode::invalid_argument,
                 "no input; all that follows --breaklines are breaklines, so put INPUT before it");
   }
-  complete_options(command);
   // An interrupted build may have been killed when its output had just got its name.
   const bool is_resumed =
       command.resume && is_there(Workspace::folder_of(output_target(command.output)));
@@ -202,7 +201,6 @@ std::unique_ptr<BuildCluster> cluster_of(const Context& context) {
 
 /// What a process does that another one directs: tasks, one at a time, without a word.
 int work_in_cluster(BuildCommand& command, const Context& context, BuildCluster& cluster) {
-  complete_options(command);
   return_freed_memory(1);
   install_sigbus_guard();
   Context silent = context;

@@ -15,9 +15,6 @@ namespace ptin::tools {
 struct BuildCommand {
   std::vector<std::string> inputs;
   std::string output;
-  std::string cost = "error";
-  std::string duplicates, returns;
-  std::vector<double> bbox;
   BuildOptions options;
   bool overwrite = false;
   std::string memory, tmp;
@@ -30,8 +27,5 @@ struct BuildCommand {
 
 /// Declares the options of `ptin build`.
 void declare_build_options(CLI::App& app, BuildCommand& command);
-
-/// Puts BuildCommand::options together, after parsing.
-void complete_options(BuildCommand& command);
 
 }  // namespace ptin::tools

@@ -3,7 +3,7 @@
 // Warnings of a build: one list, in words and in JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "engine/construct/build.h"
 #include "engine/construct/grid/source_warning.h"

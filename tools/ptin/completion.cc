@@ -3,6 +3,8 @@
 // ptin completion: a bash script made from the same table as parsing and help.
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/error_status.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/cli.h"

@@ -7,8 +7,11 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
+#include "engine/memory_units.h"
 #include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
@@ -121,7 +124,7 @@ struct ExportMemory {
 
 ExportMemory memory_of(const ExportOptions& options) {
   constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
-  const std::uint64_t bytes = memory_limit_of(options.memory, std::uint64_t{1} << 30);
+  const std::uint64_t bytes = memory_limit_of(options.memory, kMemoryOfParts);
   if (bytes < kLeast)
     throw Error(ErrorCode::invalid_argument, "--memory must be at least 32M", options.memory);
   return ExportMemory(bytes);

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "storage/index_shape.h"
 #include "tools/error_status.h"

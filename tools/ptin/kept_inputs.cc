@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/kept_inputs.h"
 
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/output/file_name.h"
 
 namespace ptin::tools {
@@ -32,11 +32,7 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return FileIdentity{status.st_dev, status.st_ino};
 }
 
-bool is_number(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0';
-}
+bool is_number(const std::string& text) { return parse_number<double>(text).has_value(); }
 
 /// The files that a VRT is made of. Other formats are not opened, since their drivers may read a
 /// whole file to open it.

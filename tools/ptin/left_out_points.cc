@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include <nlohmann/json.hpp>
+
 #include "tools/facts/human.h"
 
 namespace ptin::tools {

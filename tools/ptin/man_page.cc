@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/man_page.h"
 
+#include <CLI/CLI.hpp>
+
 #include "tools/ptin/cli.h"
 
 namespace ptin::tools {

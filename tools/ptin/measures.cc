@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/measures.h"
 
-#include <cstdlib>
 #include <utility>
 
 #include "engine/crs/ground.h"
@@ -12,12 +11,10 @@ namespace ptin::tools {
 
 namespace {
 
-/// The number in a text that may have a unit behind it; none: it is neither. What strtod takes for a
-/// number (nan, inf, 1e999) is one here, for its range to refuse.
+/// The number in a text that may have a unit behind it; none: it is neither. One that is not finite is
+/// one, for its range to refuse.
 std::optional<double> number_in(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end != text.c_str() && *end == '\0') return number;
+  if (const std::optional<double> number = parse_number<double>(text)) return number;
   const std::optional<Length> length = length_of(text);
   return length ? std::optional(length->number) : std::nullopt;
 }
@@ -31,7 +28,7 @@ CLI::Validator measures(NumberRange range, MeasureKind kind) {
   return {[range, unit](const std::string& text) {
             const std::optional<double> number = number_in(text);
             if (number && is_in(range, *number)) return std::string();
-            std::string words = "must be " + words_of(range) + ", " + unit;
+            std::string words = std::string("must be ") + words_of(range) + ", " + unit;
             if (!number) {
               words += ", or with a unit behind it (" + known_length_units() + "), as 10ft";
             }
@@ -109,18 +106,18 @@ void Measures::take(const std::string& option, const std::string& text, MeasureK
 }
 
 CLI::Validator plain_measure(NumberRange range, const std::string& unit) {
-  return {[range, unit](const std::string& text) {
-            const std::optional<double> number = number_in(text);
-            if (number && is_in(range, *number)) {
-              const std::optional<Length> length = length_of(text);
-              if (!length || !length->has_unit()) return std::string();
-              return "must be a plain number, " + unit +
-                     ": those of the source are not known before it is read; " + text +
-                     " has a unit";
-            }
-            return "must be " + words_of(range) + ", " + unit + "; " + text + " is none";
-          },
-          ""};
+  return {
+      [range, unit](const std::string& text) {
+        const std::optional<double> number = number_in(text);
+        if (number && is_in(range, *number)) {
+          const std::optional<Length> length = length_of(text);
+          if (!length || !length->has_unit()) return std::string();
+          return "must be a plain number, " + unit +
+                 ": those of the source are not known before it is read; " + text + " has a unit";
+        }
+        return std::string("must be ") + words_of(range) + ", " + unit + "; " + text + " is none";
+      },
+      ""};
 }
 
 void Measures::settle(const CrsFacts& crs) const {

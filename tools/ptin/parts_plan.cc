@@ -56,7 +56,6 @@ PartsPlan read_parts_plan(const std::string& path) {
     app.add_flag("--json", ignored);
     declare_build_options(app, plan.command);
     app.parse(arguments);
-    complete_options(plan.command);
   } catch (const nlohmann::json::exception&) {
     refuse_plan("the plan is damaged");
   } catch (const CLI::ParseError&) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <CLI/CLI.hpp>
+
 #include "engine/error.h"
 
 namespace ptin::tools {

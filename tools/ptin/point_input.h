@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "engine/geometry/affine.h"
 #include "engine/query/questions.h"
 #include "tools/ptin/command.h"

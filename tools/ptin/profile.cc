@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
 #include "engine/query/questions.h"

@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/memory_units.h"
 #include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/measures.h"
@@ -123,7 +124,7 @@ void add_by_option(CLI::App& app, AnswerBy& by);
 /// The bytes that --memory names. Without --memory: `otherwise`, or three quarters of what the
 /// process is allowed where that is less.  @throws Error invalid_argument as parse_memory
 [[nodiscard]] std::uint64_t memory_limit_of(const std::string& memory,
-                                            std::uint64_t otherwise = std::uint64_t{4} << 30);
+                                            std::uint64_t otherwise = kMemoryOfQuestion);
 
 /// The level of detail that --error or --vertices asks for.
 [[nodiscard]] DetailRequest detail_of(const DetailOptions& options);

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "tools/error_status.h"

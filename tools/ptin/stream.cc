@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "engine/crs/crs_facts.h"

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "engine/number.h"
 #include "tools/ptin/nearest_name.h"
 
 namespace ptin::tools {
@@ -133,11 +133,8 @@ std::string too_many_words(const CLI::App& app, const std::string& message) {
 std::string no_number(const std::string& rest) {
   const std::size_t sign = rest.find(" = ");
   const std::string name = rest.substr(0, sign), value = rest.substr(sign + 3);
-  char* end = nullptr;
-  std::strtod(value.c_str(), &end);
-  const bool is_number = end != value.c_str() && *end == '\0';
   return name + ": " + value +
-         (is_number ? " is no whole number that it can take" : " is no number");
+         (parse_number<double>(value) ? " is no whole number that it can take" : " is no number");
 }
 
 /// "--by: x not in {stars,splits}".

@@ -15,6 +15,7 @@
 #include <ogr_spatialref.h>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/memory_units.h"
 #include "engine/remote/remote_file.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
@@ -70,8 +71,6 @@ void verify_crs(const Terrain& terrain, Findings& findings) {
     findings.faults.push_back({"its CRS is no WKT that outputs can name", "section \"metadata\""});
 }
 
-constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;  ///< Unless --memory says otherwise.
-
 /// The terrain, unless there are faults; one more is a T0 that no mesh can begin with.
 std::optional<Terrain> open_if_sound(const VerifyCommand& command, const Context& context,
                                      Findings& findings) {
@@ -89,7 +88,7 @@ std::optional<Terrain> open_if_sound(const VerifyCommand& command, const Context
 void verify_hierarchy(const VerifyCommand& command, const Terrain& terrain, const Context& context,
                       Progress& progress, Findings& findings) {
   HierarchyRequest request;
-  request.limits = {memory_limit_of(command.memory, kMemory), context.stop};
+  request.limits = {memory_limit_of(command.memory, kMemoryOfParts), context.stop};
   request.max_faults = std::max<std::size_t>(1, command.faults);
   request.progress = [&progress](double done) {
     constexpr double kWhole = 1000;
@@ -129,7 +128,7 @@ std::vector<std::optional<double>> tolerances_of(const VerifyCommand& command,
 SampleResources resources_of(const VerifyCommand& command, const Context& context) {
   const ExternalMemory memory{FileLayer::system(),
                               command.tmp.empty() ? folder_of(command.terrain.file) : command.tmp,
-                              memory_limit_of(command.memory, kMemory)};
+                              memory_limit_of(command.memory, kMemoryOfParts)};
   return {memory, context.stop, command.lines};
 }
 

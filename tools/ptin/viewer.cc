@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "storage/file_beginning.h"
 #include "storage/layout.h"
 #include "tools/error_status.h"

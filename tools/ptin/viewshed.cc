@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gdal_priv.h>
+#include <nlohmann/json.hpp>
 #include <ogr_geometry.h>
 
 #include "engine/construct/memory_plan.h"

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/ground.h"
 #include "tools/formats/mesh_writer.h"
 #include "tools/formats/number_text.h"

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace ptin::serve {
 

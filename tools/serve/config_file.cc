@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -13,6 +12,7 @@
 #include <sys/stat.h>
 
 #include "engine/error.h"
+#include "engine/number.h"
 #include "tools/serve/limit_table.h"
 
 namespace ptin::serve {
@@ -53,10 +53,8 @@ void take_setting(const std::string& name, const std::string& value, const std::
   } else if (name == "trusted_proxies") {
     add_trusted_proxies(value, options);
   } else if (name == "threads") {
-    const auto [end, status] =
-        std::from_chars(value.data(), value.data() + value.size(), options.http.threads);
-    if (status != std::errc() || end != value.data() + value.size() || options.http.threads == 0 ||
-        options.http.threads > kMostThreads) {
+    options.http.threads = parse_number<decltype(options.http.threads)>(value).value_or(0);
+    if (options.http.threads == 0 || options.http.threads > kMostThreads) {
       refuse("threads is no whole number from 1 to " + std::to_string(kMostThreads), path);
     }
   } else {

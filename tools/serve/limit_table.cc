@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "engine/error.h"
+#include "engine/memory_units.h"
+#include "engine/number.h"
 #include "tools/facts/human.h"
 
 namespace ptin::serve {
@@ -19,7 +20,6 @@ milliseconds of_ms(std::uint64_t ms) { return milliseconds(static_cast<std::int6
 
 constexpr std::uint64_t kAny = std::uint64_t{1} << 40;
 /// Of what a request may make a connection hold.
-constexpr std::uint64_t kGibibyte = std::uint64_t{1} << 30;
 
 #define PTIN_LIMIT(member)                                       \
   [](const ServeOptions& o) { return std::uint64_t{o.member}; }, \
@@ -29,12 +29,11 @@ constexpr std::uint64_t kGibibyte = std::uint64_t{1} << 30;
       [](ServeOptions& o, std::uint64_t v) { o.member = of_ms(v); }
 
 constexpr auto kLimits = std::to_array<LimitFact>({
-    {"request_line_bytes", "the first line of a request (414)", "bytes", 256, kGibibyte,
+    {"request_line_bytes", "the first line of a request (414)", "bytes", 256, kGiB,
      PTIN_LIMIT(http.request_line_bytes)},
-    {"header_bytes", "all header lines of a request (431)", "bytes", 256, kGibibyte,
+    {"header_bytes", "all header lines of a request (431)", "bytes", 256, kGiB,
      PTIN_LIMIT(http.header_bytes)},
-    {"body_bytes", "the body of a request (413)", "bytes", 256, kGibibyte,
-     PTIN_LIMIT(http.body_bytes)},
+    {"body_bytes", "the body of a request (413)", "bytes", 256, kGiB, PTIN_LIMIT(http.body_bytes)},
     {"connections",
      "connections at once; beyond, the longest idle one closes, or none is idle (503)", "", 1, kAny,
      PTIN_LIMIT(http.connections)},
@@ -88,9 +87,7 @@ std::string known_names() {
 std::uint64_t number_in(const LimitFact& limit, const std::string& text) {
   if (limit.unit == "bytes" && text == "0") return 0;  // Which is no size elsewhere.
   if (limit.unit == "bytes") return tools::parse_bytes(text, "--limit");
-  std::uint64_t value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status == std::errc() && end == text.data() + text.size()) return value;
+  if (const auto value = parse_number<std::uint64_t>(text)) return *value;
   refuse("\"" + text + "\" is no whole number; the limit " + std::string(limit.name) + " counts " +
              (limit.unit == "ms" ? "milliseconds" : "pieces"),
          "--limit");

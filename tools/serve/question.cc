@@ -2,10 +2,10 @@
 #include "tools/serve/question.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "engine/number.h"
 #include "tools/http/problem.h"
 
 namespace ptin::serve {
@@ -35,13 +35,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<double> number_of(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_one = status == std::errc() && end == text.data() + text.size();
-  if (!is_one || !std::isfinite(number)) return std::nullopt;
-  return number;
+  const std::optional<double> number = parse_number<double>(trimmed(text));
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 Question::Question(const http::Request& request, std::span<const ParameterFact> facts,
@@ -130,10 +125,8 @@ double Question::number(std::string_view name, double otherwise) const {
 
 std::optional<std::uint64_t> Question::count(std::string_view name) const {
   if (!has(name)) return std::nullopt;
-  const std::string_view given = trimmed(text(name));
-  std::uint64_t count = 0;
-  const auto [end, status] = std::from_chars(given.data(), given.data() + given.size(), count);
-  if (status != std::errc() || end != given.data() + given.size()) {
+  const auto count = parse_number<std::uint64_t>(trimmed(text(name)));
+  if (!count) {
     throw bad(name, "\"" + http::shown(text(name)) + "\" is no whole number of at least 0");
   }
   return count;

@@ -10,6 +10,7 @@
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/crs_in_text.h"
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/number.h"
 
 namespace ptin {
 
@@ -81,7 +82,7 @@ std::string height_unit_of_prj(GDALDataset& data) {
   for (int i = 0; i < lines.size(); ++i) {
     const CPLStringList words(CSLTokenizeString2(lines[i], " \t", 0));
     if (words.size() > 1 && EQUAL(words[0], "Zunits") && !EQUAL(words[1], "NO")) {
-      const bool is_number = std::strtod(words[1], nullptr) != 0.0;
+      const bool is_number = parse_number<double>(words[1]).value_or(0.0) != 0.0;
       return is_number ? std::string("Zunits ") + words[1] : std::string(words[1]);
     }
   }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/grid/frame_file.h"
 
-#include <type_traits>
-
 namespace ptin {
 
 namespace {
@@ -15,7 +13,6 @@ struct PlainFrame {
   double height_rounding, height_quantum, min_height, max_height;
   std::uint32_t vertical_crs_known, geographic;
 };
-static_assert(std::is_trivially_copyable_v<PlainFrame>);
 
 }  // namespace
 

@@ -45,7 +45,8 @@ class StepCounter {
 
  private:
   int decimals_ = 0;
-  double unit_ = 0.0;  ///< 0: steps are 10^-decimals_, counted exactly.
+  [[maybe_unused]] int unused_ = 0;  ///< In the place of padding: grids are written as they are.
+  double unit_ = 0.0;                ///< 0: steps are 10^-decimals_, counted exactly.
   double origin_ = 0.0;
 };
 
@@ -95,9 +96,9 @@ struct PointGrid {
   bool drops_digits = false;  ///< Digits of x and y, which then move to the nearest step.
   /// The points take more than 180 units from west to east, and as many on end are empty.
   bool is_split = false;
+  std::array<bool, 5> unused{};  ///< In the place of padding: grids are written as they are.
 
   /// REQUIRES: `p` is one of the points from which the grid was found.
-
   [[nodiscard]] GridPoint position(const SourcePoint& p) const noexcept {
     return {static_cast<std::int32_t>(x.steps(p.x) - west),
             static_cast<std::int32_t>(y.steps(p.y) - south)};

@@ -2,6 +2,7 @@
 #include "engine/construct/hierarchy/segment.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/check.h"
 
@@ -16,18 +17,43 @@ void raise_to(RecordBounds& bounds, const RecordBounds& least) {
 
 }  // namespace
 
+void combine(std::vector<BoundsRaise>& raises) {
+  std::sort(raises.begin(), raises.end(), [](const BoundsRaise& a, const BoundsRaise& b) {
+    return key_of(a.vertex) < key_of(b.vertex);
+  });
+  std::size_t kept = 0;
+  for (const BoundsRaise& r : raises) {
+    if (kept > 0 && raises[kept - 1].vertex == r.vertex) {
+      raise_to(raises[kept - 1].bounds, r.bounds);
+    } else {
+      raises[kept++] = r;
+    }
+  }
+  raises.resize(kept);
+}
+
 SegmentBounds::SegmentBounds(const SegmentView& segment)
     : segment_(&segment), bounds_(segment.foreign.begin(), segment.foreign.end()) {
   bounds_.reserve(segment.foreign.size() + segment.records.size());
   for (const VertexSplit& r : segment.records) {
     bounds_.push_back({r.error, r.deviation});
   }
+  by_vertex_.resize(segment.records.size());
+  std::iota(by_vertex_.begin(), by_vertex_.end(), 0U);
+  std::sort(by_vertex_.begin(), by_vertex_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return key_of(segment.records[a].u) < key_of(segment.records[b].u);
+  });
 }
 
 void SegmentBounds::raise(std::span<const BoundsRaise> raises) {
+  auto at = by_vertex_.begin();  // both ascend
   for (const BoundsRaise& r : raises) {
-    PTIN_CHECK(r.record < segment_->records.size());
-    raise_to(bounds_[segment_->foreign.size() + r.record], r.bounds);
+    at = std::lower_bound(at, by_vertex_.end(), key_of(r.vertex),
+                          [this](std::uint32_t record, VertexKey key) {
+                            return key_of(segment_->records[record].u) < key;
+                          });
+    PTIN_CHECK(at != by_vertex_.end() && segment_->records[*at].u == r.vertex);
+    raise_to(bounds_[segment_->foreign.size() + *at], r.bounds);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/construct/tile/record_stars.h"
 #include "engine/construct/tile/tile_tree.h"
+#include "engine/geometry/point.h"
 #include "storage/record.h"
 #include "storage/star.h"
 
@@ -21,11 +22,16 @@ struct RecordBounds {
   friend bool operator==(const RecordBounds&, const RecordBounds&) = default;
 };
 
-/// What a leaf shows of one record of a segment: its error and deviation are at least `bounds`.
+/// What a leaf shows of one record of a segment: its error and deviation are at least `bounds`. The
+/// record is known by its vertex, since its place among the records follows from all collapses before
+/// it: a change elsewhere would move it, and change files that tell the same.
 struct BoundsRaise {
-  std::uint32_t record = 0;  ///< Index in `records` of the segment.
+  GridPoint vertex;  ///< VertexSplit::u of the record.
   RecordBounds bounds;
 };
+
+/// Joins raises of several leaves: leaves one for each record, the maxima, by vertex key.
+void combine(std::vector<BoundsRaise>& raises);
 
 /// The segment of a tile of level 2 or more after its collapses. Its records depend on **foreign**
 /// records, those that its children pushed up, and on one another; both kinds share one numbering.
@@ -58,13 +64,14 @@ struct SegmentView {
 };
 
 /// Errors and deviations of a segment while they are being tightened. Memory: 8 bytes for each
-/// record, foreign ones included.
+/// record, foreign ones included, and 4 for each own one.
 class SegmentBounds {
  public:
   /// @param segment  Must outlive this object, with its arrays.
   explicit SegmentBounds(const SegmentView& segment);
 
   /// Raises bounds of own records. Takes maxima, so the order of calls does not matter.
+  /// REQUIRES: `raises` are those of combine().
   void raise(std::span<const BoundsRaise> raises);
   /// Takes the final bounds of the records that a child pushed up, in their order.
   /// @param child  Its place among the children.
@@ -80,7 +87,8 @@ class SegmentBounds {
 
  private:
   const SegmentView* segment_;
-  std::vector<RecordBounds> bounds_;  ///< By number: of foreign records, then of own ones.
+  std::vector<RecordBounds> bounds_;      ///< By number: of foreign records, then of own ones.
+  std::vector<std::uint32_t> by_vertex_;  ///< Own records, ascending by vertex key.
 };
 
 }  // namespace ptin

@@ -304,7 +304,7 @@ void replay_over_leaf(std::span<const ReplaySegment> chain, const Tin& t0, Start
       }
       const RecordBounds shown = replay.apply(record);
       if (shown.error > record.error || shown.deviation > record.deviation) {
-        segment.raises->push_back({static_cast<std::uint32_t>(i), shown});
+        segment.raises->push_back({record.u, shown});
       }
     }
   }

@@ -3,6 +3,7 @@
 // From lines to edges that meet at their ends alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <stop_token>
@@ -22,8 +23,9 @@ struct LineVertex {
 /// A straight piece of a line between two vertices, a < b by place.
 struct LineEdge {
   std::uint32_t a = 0, b = 0;
-  bool breakline = false;  ///< Some breakline goes along it.
-  bool boundary = false;   ///< An odd number of sides of the boundary lie along it.
+  bool breakline = false;        ///< Some breakline goes along it.
+  bool boundary = false;         ///< An odd number of sides of the boundary lie along it.
+  std::array<bool, 2> unused{};  ///< In the place of padding: edges are written as they are.
 };
 
 /// A side of the boundary, or a part of one, where there is no ground. It tells inside from outside.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Buckets of points that outlive the process.
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/frame_file.h"
@@ -37,7 +36,6 @@ SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept
 }
 
 ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) const {
-  static_assert(std::is_trivially_copyable_v<Kept>);
   for (const auto& file : files_) {
     file->sync();
   }

@@ -2,7 +2,6 @@
 #include "engine/construct/points/point_reading.h"
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/crs.h"
@@ -64,12 +63,11 @@ struct PlainRead {
   std::int32_t plan_decimals, height_decimals;
   std::uint32_t has_lattice, has_rows;
 };
-static_assert(std::is_trivially_copyable_v<PlainRead>);
 
 /// Tells how much of a portion is done, in its bytes.
 class PortionProgress {
  public:
-  PortionProgress(const PointPortion& portion, const StageTask& task)
+  PortionProgress(const PointPortion& portion, const Task& task)
       : bytes_(portion.bytes), task_(task) {}
   void operator()(std::uint64_t done, std::uint64_t total) const {
     if (task_.progress) {
@@ -81,7 +79,7 @@ class PortionProgress {
 
  private:
   std::uint64_t bytes_;
-  const StageTask& task_;
+  const Task& task_;
 };
 
 }  // namespace
@@ -152,14 +150,14 @@ ReadingPlan take_reading_plan(ArrayFileReader& file) {
 }
 
 PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint64_t number,
-                                         const StageTask& task) {
+                                         const Task& task) {
   const std::string& path = inputs_[portion.input];
   std::unique_lock alone(one_tin_, std::defer_lock);
   if (point_format_of(path, options_.points) == PointFormat::kTin) {
     alone.lock();
   }
   const PortionProgress progress(portion, task);
-  const ExternalMemory memory{files_.files, files_.folder, task.memory};
+  const ExternalMemory memory{files_.files, files_.folder, task.bytes};
   const auto stream = open_point_stream(path, options_.points, options_.nodata,
                                         {&memory, task.stop, progress}, portion.part);
   PortionRead result;
@@ -197,7 +195,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
 }
 
 std::optional<ArrayFileFacts> PortionReader::read(const PointPortion& portion, std::uint64_t number,
-                                                  const StageTask& task) {
+                                                  const Task& task) {
   try {
     const PortionRead result = read_to_spool(portion, number, task);
     ArrayFileWriter file(files_.files, files_.path("read", number));

@@ -16,12 +16,12 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/point_portions.h"
 #include "engine/construct/read/point_part.h"
 #include "engine/construct/scratch/array_file.h"
+#include "engine/construct/tasks/task.h"
 
 namespace ptin {
 
@@ -81,11 +81,11 @@ class PortionReader {
   /// @return  The facts of that file; none where the portion has quotes (QuotesInPart).
   /// @throws Error as open_point_stream(), PointStream, resource_exhausted, io_error, cancelled
   [[nodiscard]] std::optional<ArrayFileFacts> read(const PointPortion& portion,
-                                                   std::uint64_t number, const StageTask& task);
+                                                   std::uint64_t number, const Task& task);
 
  private:
   [[nodiscard]] PortionRead read_to_spool(const PointPortion& portion, std::uint64_t number,
-                                          const StageTask& task);
+                                          const Task& task);
 
   const std::vector<std::string>& inputs_;
   const SourceOptions& options_;

@@ -14,7 +14,7 @@ namespace ptin {
 namespace {
 
 /// Writes records to the ranges of one file.
-template <class Record>
+template <PlainValue Record>
 class ShareWriter {
  public:
   ShareWriter(const SortPlan& plan, const PointFiles& files, std::size_t share)
@@ -116,13 +116,13 @@ Record record_of(std::uint64_t key, double height, std::uint64_t number) {
 }
 
 template <class Record>
-ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const StageTask& task) {
+ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const Task& task) {
   const PointOrder order = plan.order();
-  ShareWriter<Record> writer(plan, files, task.number);
+  ShareWriter<Record> writer(plan, files, number_of(task.name));
   ShareCounts counts;
   std::vector<SourcePoint> points;
   std::uint64_t done = 0;
-  visit_blocks(plan, files, task.number,
+  visit_blocks(plan, files, number_of(task.name),
                [&](SpoolReader& reader, std::uint64_t block, std::uint64_t number) {
                  stop_if_asked(task.stop, "sorting the points");
                  reader.read(block, points);
@@ -147,17 +147,17 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
                    task.progress(done);
                  }
                });
-  add_fixed_vertices(plan, task.number, [&](std::uint64_t key, double height) {
+  add_fixed_vertices(plan, number_of(task.name), [&](std::uint64_t key, double height) {
     writer.add(record_of<Record>(key, height, 0));
   });
-  ArrayFileWriter facts(files.files, files.path("shared", task.number));
+  ArrayFileWriter facts(files.files, files.path("shared", number_of(task.name)));
   writer.finish(facts, counts);
   return facts.finish();
 }
 
 }  // namespace
 
-ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files, const StageTask& task) {
+ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files, const Task& task) {
   return plan.is_numbered() ? share_out_as<NumberedHeight>(plan, files, task)
                             : share_out_as<KeyedHeight>(plan, files, task);
 }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "engine/construct/grid/point_sorter.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/sort_plan.h"
 #include "engine/construct/scratch/array_file.h"
+#include "engine/construct/tasks/task.h"
 
 namespace ptin {
 
@@ -29,15 +29,15 @@ struct ShareBlock {
   std::uint64_t checksum = 0;
 };
 
-/// The points of a share of the source that task `task.number` of plan.shares takes: a place along the
-/// curve and a height for each, to a file in which the records of a range are told, and what is where
+/// The points of a share of the source, the one of plan.shares that the task has the number of: a place
+/// along the curve and a height for each, to a file in which the records of a range are told, and what is where
 /// to a file beside it; likewise some of the vertices of lines. Left out are points that fall on such a
 /// vertex, or beyond the boundary.
 /// Memory: plan.ranges() * plan.block_records records.
 /// @return  The facts of the latter file.
 /// @throws Error corruption, not_found, io_error, resource_exhausted, cancelled
 [[nodiscard]] ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files,
-                                       const StageTask& task);
+                                       const Task& task);
 
 /// What a share counted.  @throws Error corruption, not_found, io_error
 [[nodiscard]] ShareCounts counts_of_share(const PointFiles& files, std::size_t share,

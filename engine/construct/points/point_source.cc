@@ -86,28 +86,30 @@ void PointSource::remove_files() noexcept {
   }
 }
 
-/// Has a stage done by whomever, or by this thread alone.
-std::vector<std::string> PointSource::run(const SourceStage& stage, bool alone) {
-  if (!alone) {
-    return work_.run(stage, tasks_);
+/// Has tasks done by whomever, or by this thread alone. Returns what came of each, by number.
+std::vector<ArrayFileFacts> PointSource::run(TaskList tasks, bool alone) {
+  if (alone) {
+    tasks.set_bytes(work_.memory);
+    tasks.tell(work_.progress);
+    TaskDriver().run(tasks, tasks_, {}, work_.stop);
+  } else {
+    work_.run(tasks, tasks_);
   }
-  return run_alone_within(stage, tasks_, work_.memory, work_.stop,
-                          [&](std::uint64_t done, std::uint64_t total) {
-                            if (work_.progress) {
-                              work_.progress(stage.name.c_str(), done, total);
-                            }
-                          });
+  std::vector<ArrayFileFacts> found;
+  for (const auto& [name, result] : tasks.results()) {
+    found.push_back(result.facts(TileFile::kIndex));
+  }
+  return found;
 }
 
 /// Reads the portions of a plan; of those that have quotes there is none.
 std::vector<std::optional<SpooledPortion>> PointSource::read_some(const ReadingPlan& plan) {
-  const std::vector<std::string> told = run(tasks_.reading(plan), is_read_once());
+  const std::vector<ArrayFileFacts> found = run(tasks_.reading(plan), is_read_once());
   std::vector<std::optional<SpooledPortion>> portions;
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    const auto facts = PointTasks::portion_in(told[i]);
-    portions.push_back(
-        facts ? std::optional<SpooledPortion>({plan.portions[i], plan.first_number + i, *facts})
-              : std::nullopt);
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    portions.push_back(found[i].bytes > 0 ? std::optional<SpooledPortion>(
+                                                {plan.portions[i], plan.first_number + i, found[i]})
+                                          : std::nullopt);
   }
   return portions;
 }
@@ -172,12 +174,12 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   return index;
 }
 
-void PointSource::join_ranges(const std::vector<std::string>& told, const SortPlan& plan,
+void PointSource::join_ranges(const std::vector<ArrayFileFacts>& found, const SortPlan& plan,
                               PointBuckets::Index& index) const {
   HeightFinder heights(plan.grid.whole, plan.grid.heights.unit());
   HullCollector hull;
-  for (std::size_t range = 0; range < told.size(); ++range) {
-    const RangeIndex of = index_of_range(work_.files, range, PointTasks::facts_in(told[range]));
+  for (std::size_t range = 0; range < found.size(); ++range) {
+    const RangeIndex of = index_of_range(work_.files, range, found[range]);
     if (of.points == 0) {
       without_old(work_.files.files, plan.buckets_of(range));
       continue;
@@ -219,9 +221,9 @@ PointBuckets PointSource::sort_once(const std::string& buckets, bool is_last) {
   auto plan = std::make_shared<SortPlan>(plan_sorting(*reading_, grid, std::move(lines.edges),
                                                       options_.merge, buckets, work_.sorting));
   index.bucket_points = plan->bucket_points;
-  const std::vector<std::string> shares = run(tasks_.sharing(plan), false);
+  const std::vector<ArrayFileFacts> shares = run(tasks_.sharing(plan), false);
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    const ShareCounts counts = counts_of_share(work_.files, i, PointTasks::facts_in(shares[i]));
+    const ShareCounts counts = counts_of_share(work_.files, i, shares[i]);
     index.counts.source_points -= counts.left_out;
     index.counts.left_out.add(LeftOutReason::kBoundary, counts.left_out);
     index.counts.largest_shift_plan =

@@ -11,24 +11,24 @@
 #include <vector>
 
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/points/point_buckets.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/point_portions.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/construct/points/point_tasks.h"
 #include "engine/construct/points/sort_plan.h"
+#include "engine/construct/tasks/task_driver.h"
 
 namespace ptin {
 
 /// What reading and sorting goes by, beside the source.
 struct PointWork {
   PointFiles files;
-  RunStage run;  ///< Has the tasks done.
+  RunTasks run;  ///< Has the tasks done.
   std::stop_token stop{};
-  std::uint64_t memory = std::uint64_t{64} << 20;  ///< For what no stage does, bytes.
-  /// How far is what no stage does; may be empty.
-  std::function<void(const char* stage, std::uint64_t done, std::uint64_t total)> progress{};
+  std::uint64_t memory = std::uint64_t{64} << 20;  ///< For what this process does by itself, bytes.
+  /// Told how far is what this process does by itself; may be empty.
+  std::function<void(const StageProgress& progress)> progress{};
   PortionSizes portions{};
   SortSizes sorting{};
 };
@@ -42,7 +42,7 @@ struct PointWork {
 ///
 /// Disk, in files.folder, named: 27 bytes a point from when it is read, and 16 (for kFirst 24) more when
 /// it is shared out; then the former go, and buckets come, at most 16, mostly half of that
-/// (points/packed_bucket.h). Memory of a task: some MiB, and to sort a range as StageTask::memory
+/// (points/packed_bucket.h). Memory of a task: some MiB, and to sort a range as Task::bytes
 /// says; here 32 bytes for each of at most 2^20 buckets, and 48 for each of at most 2^18 samples.
 class PointSource {
  public:
@@ -93,11 +93,11 @@ class PointSource {
   void read();
   [[nodiscard]] bool is_read_once() const;
   [[nodiscard]] PointBuckets sort_once(const std::string& buckets, bool is_last);
-  [[nodiscard]] std::vector<std::string> run(const SourceStage& stage, bool alone);
+  [[nodiscard]] std::vector<ArrayFileFacts> run(TaskList tasks, bool alone);
   [[nodiscard]] std::vector<SpooledPortion> read_all();
   [[nodiscard]] std::vector<std::optional<SpooledPortion>> read_some(const ReadingPlan& plan);
   [[nodiscard]] PointBuckets::Index begin_index(const PointGrid& grid) const;
-  void join_ranges(const std::vector<std::string>& told, const SortPlan& plan,
+  void join_ranges(const std::vector<ArrayFileFacts>& found, const SortPlan& plan,
                    PointBuckets::Index& index) const;
 
   std::vector<std::string> inputs_;

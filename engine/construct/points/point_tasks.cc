@@ -21,8 +21,6 @@ constexpr const char* kSharedPlan = "shares";
 /// Bytes that any task takes for blocks, buffers and what it knows of files.
 constexpr std::uint64_t kTaskBytes = std::uint64_t{2} << 20;
 
-constexpr const char* kQuotes = "quotes";  ///< A task's word for a portion that has them.
-
 }  // namespace
 
 PointTasks::PointTasks(std::vector<std::string> inputs, SourceOptions options, PointFiles files)
@@ -33,57 +31,44 @@ PointTasks::PointTasks(std::vector<std::string> inputs, SourceOptions options, P
 
 PointTasks::~PointTasks() = default;
 
-SourceStage PointTasks::reading(const ReadingPlan& plan) const {
+TaskList PointTasks::reading(const ReadingPlan& plan) const {
   ArrayFileWriter file(files_.files, files_.path(kReadingPlan, 0));
   put(file, plan);
-  SourceStage stage{kReadingStage, {}, text_of_value(file.finish()), kTaskBytes};
+  std::vector<std::uint64_t> sizes;
   for (const PointPortion& portion : plan.portions) {
-    stage.sizes.push_back(portion.bytes);
+    sizes.push_back(portion.bytes);
   }
-  return stage;
+  return {TaskKind::kRead, std::move(sizes), kTaskBytes, file.finish()};
 }
 
-std::string PointTasks::read(const StageTask& task) {
-  ArrayFileReader file = files_.open(files_.path(kReadingPlan, 0), facts_in(task.facts));
+ArrayFileFacts PointTasks::read(const Task& task) {
+  ArrayFileReader file = files_.open(files_.path(kReadingPlan, 0), task.inputs.at(0).facts);
   const ReadingPlan plan = take_reading_plan(file);
-  const auto facts =
-      reader_.read(plan.portions.at(task.number), plan.first_number + task.number, task);
-  return facts ? text_of_value(*facts) : kQuotes;
+  const std::size_t number = number_of(task.name);
+  return reader_.read(plan.portions.at(number), plan.first_number + number, task)
+      .value_or(ArrayFileFacts{});
 }
 
-std::optional<ArrayFileFacts> PointTasks::portion_in(const std::string& told) {
-  return told == kQuotes ? std::nullopt : std::optional(facts_in(told));
-}
-
-ArrayFileFacts PointTasks::facts_in(const std::string& told) {
-  return value_in_text<ArrayFileFacts>(told);
-}
-
-SourceStage PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
+TaskList PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
   ArrayFileWriter file(files_.files, files_.path(kSortPlan, 0));
   put(file, *plan);
   const std::lock_guard lock(mutex_);
   plan_ = std::move(plan);
   plan_facts_ = file.finish();
-  const std::vector<std::uint64_t> sizes(plan_->shares,
-                                         std::max<std::uint64_t>(plan_->points / plan_->shares, 1));
-  return {kSharingStage, sizes, text_of_value(plan_facts_),
-          kTaskBytes + plan_->ranges() * plan_->block_records * sizeof(NumberedHeight)};
+  const std::uint64_t size = std::max<std::uint64_t>(plan_->points / plan_->shares, 1);
+  return {TaskKind::kShare, std::vector<std::uint64_t>(plan_->shares, size),
+          kTaskBytes + plan_->ranges() * plan_->block_records * sizeof(NumberedHeight),
+          plan_facts_};
 }
 
-SourceStage PointTasks::sorting(const std::vector<std::string>& told) {
+TaskList PointTasks::sorting(const std::vector<ArrayFileFacts>& shares) {
   ArrayFileWriter file(files_.files, files_.path(kSharedPlan, 0));
-  std::vector<ArrayFileFacts> shares;
-  shares.reserve(told.size());
-  for (const std::string& facts : told) {
-    shares.push_back(facts_in(facts));
-  }
   const std::lock_guard lock(mutex_);
   file.put(std::span<const ArrayFileFacts>(&plan_facts_, 1));
   file.put(shares);
-  const std::vector<std::uint64_t> sizes(
-      plan_->ranges(), std::max<std::uint64_t>(plan_->points / plan_->ranges(), 1));
-  return {kSortingStage, sizes, text_of_value(file.finish()), kTaskBytes + plan_->least_memory};
+  const std::uint64_t size = std::max<std::uint64_t>(plan_->points / plan_->ranges(), 1);
+  return {TaskKind::kSort, std::vector<std::uint64_t>(plan_->ranges(), size),
+          kTaskBytes + plan_->least_memory, file.finish()};
 }
 
 /// The plan, which is read once.
@@ -98,17 +83,24 @@ std::shared_ptr<const SortPlan> PointTasks::plan_of(const ArrayFileFacts& facts)
   return plan_;
 }
 
-std::string PointTasks::run(const StageTask& task) {
-  if (task.name == kReadingStage) {
+ArrayFileFacts PointTasks::index_of(const Task& task) {
+  if (task.name.kind == TaskKind::kRead) {
     return read(task);
   }
-  if (task.name == kSharingStage) {
-    return text_of_value(share_out(*plan_of(facts_in(task.facts)), files_, task));
+  const ArrayFileFacts& plan_of_task = task.inputs.at(0).facts;
+  if (task.name.kind == TaskKind::kShare) {
+    return share_out(*plan_of(plan_of_task), files_, task);
   }
-  ArrayFileReader file = files_.open(files_.path(kSharedPlan, 0), facts_in(task.facts));
+  ArrayFileReader file = files_.open(files_.path(kSharedPlan, 0), plan_of_task);
   const ArrayFileFacts plan = file.take_copy<ArrayFileFacts>()[0];
   const std::vector<ArrayFileFacts> shares = file.take_copy<ArrayFileFacts>();
-  return text_of_value(sort_range(*plan_of(plan), shares, files_, task));
+  return sort_range(*plan_of(plan), shares, files_, task);
+}
+
+TaskResult PointTasks::run(const Task& task) {
+  TaskResult result;
+  result.facts(TileFile::kIndex) = index_of(task);
+  return result;
 }
 
 }  // namespace ptin

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/grid/point_merge.h"
@@ -24,7 +23,6 @@ struct PlainIndex {
   double largest_shift_height;
   HeightFinder::Known heights;
 };
-static_assert(std::is_trivially_copyable_v<PlainIndex>);
 
 /// Merges points that come in the order of the curve, and writes them in buckets.
 class BucketWriter {
@@ -105,8 +103,8 @@ class BucketWriter {
 
 template <class Sorter, class Record>
 RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const PointFiles& files,
-                   const StageTask& task) {
-  const ExternalMemory memory{files.files, files.folder, std::max(task.memory, plan.least_memory)};
+                   const Task& task) {
+  const ExternalMemory memory{files.files, files.folder, std::max(task.bytes, plan.least_memory)};
   Sorter sorter(memory, "points", task.stop);
   sorter.expect(records.records());
   const auto report = [&](std::uint64_t done) {
@@ -121,7 +119,7 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
     }
     report(sorter.size());
   });
-  BucketWriter writer(plan, files, plan.buckets_of(task.number));
+  BucketWriter writer(plan, files, plan.buckets_of(number_of(task.name)));
   std::uint64_t done = sorter.size();
   sorter.merge(
       [&](const auto& points) {
@@ -137,12 +135,12 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
 }  // namespace
 
 ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts>& shares,
-                          const PointFiles& files, const StageTask& task) {
-  const RangeOfShares records(files, shares, task.number);
+                          const PointFiles& files, const Task& task) {
+  const RangeOfShares records(files, shares, number_of(task.name));
   const RangeIndex index =
       plan.is_numbered() ? sort_as<NumberedPointSorter, NumberedHeight>(plan, records, files, task)
                          : sort_as<PointSorter, KeyedHeight>(plan, records, files, task);
-  ArrayFileWriter file(files.files, files.path("range", task.number));
+  ArrayFileWriter file(files.files, files.path("range", number_of(task.name)));
   const PlainIndex plain{index.points, index.largest_shift_height, index.heights.known()};
   file.put(std::span(&plain, 1));
   file.put(index.hull);

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "engine/construct/grid/height_finder.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/sort_plan.h"
 #include "engine/construct/scratch/array_file.h"
+#include "engine/construct/tasks/task.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/convex_hull.h"
 
@@ -29,16 +29,17 @@ struct RangeIndex {
   std::vector<std::uint64_t> checksums;  ///< Of the buckets.
 };
 
-/// Sorts range `task.number` of what was shared out, and writes its buckets to plan.buckets_of(), and
+/// Sorts the range of the task's number of what was shared out, and writes its buckets to
+/// plan.buckets_of(), and
 /// their index to a file of its own.
-/// Memory: task.memory, or plan.least_memory where that is more. Disk: where that is too little, as
+/// Memory: task.bytes, or plan.least_memory where that is more. Disk: where that is too little, as
 /// much as the records of the range take, once more.
 /// @param shares  The facts of all shares.
 /// @return  The facts of the index.
 /// @throws Error corruption, not_found, io_error, resource_exhausted, cancelled
 [[nodiscard]] ArrayFileFacts sort_range(const SortPlan& plan,
                                         const std::vector<ArrayFileFacts>& shares,
-                                        const PointFiles& files, const StageTask& task);
+                                        const PointFiles& files, const Task& task);
 
 /// @throws Error corruption, not_found, io_error
 [[nodiscard]] RangeIndex index_of_range(const PointFiles& files, std::size_t range,

@@ -2,7 +2,6 @@
 #include "engine/construct/points/sort_plan.h"
 
 #include <algorithm>
-#include <type_traits>
 #include <utility>
 
 #include "engine/construct/lines/edges_file.h"
@@ -20,7 +19,6 @@ struct PlainPlan {
   PointGrid grid;
   std::uint64_t rule, points, shares, block_records, bucket_points, least_memory;
 };
-static_assert(std::is_trivially_copyable_v<PlainPlan>);
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "engine/construct/tasks/value_text.h"
 #include "engine/stop.h"
 
 namespace ptin {
@@ -60,24 +61,23 @@ SampleRange RasterScan::band(std::size_t number) const {
   return {0, south, mosaic_.width(), north - south};
 }
 
-SourceStage RasterScan::stage() const {
-  SourceStage stage{"reading", {}, ""};
+TaskList RasterScan::tasks() const {
+  const std::int64_t rows = rows_of_band();
+  std::vector<std::uint64_t> sizes;
+  for (std::int64_t i = 0; i < (mosaic_.height() + rows - 1) / rows; ++i) {
+    sizes.push_back(band(static_cast<std::size_t>(i)).samples());
+  }
   // The values of a step, of at most eight bytes, and whether each is one; where rasters are laid over
   // one another those of one of them besides; and a mask.
-  stage.task_bytes = (2 * (8 + 1) + 1) * step_.samples();
-  const std::int64_t rows = rows_of_band();
-  for (std::int64_t i = 0; i < (mosaic_.height() + rows - 1) / rows; ++i) {
-    stage.sizes.push_back(band(static_cast<std::size_t>(i)).samples());
-  }
-  return stage;
+  return {TaskKind::kScan, std::move(sizes), (2 * (8 + 1) + 1) * step_.samples()};
 }
 
 template <class T>
-RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const StageTask& task) const {
+RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const Task& task) const {
   HeightScan heights(given(shape_.raw));
   RasterSuspects suspects;
   Found found;
-  const SampleRange whole = band(task.number);
+  const SampleRange whole = band(number_of(task.name));
   std::vector<T> values(
       static_cast<std::size_t>(step_.width * std::min(step_.height, whole.height)));
   std::vector<std::uint8_t> valid(values.size());
@@ -139,21 +139,23 @@ void RasterScan::put_back(std::unique_ptr<RasterMosaic> mosaic) {
   idle_.push_back(std::move(mosaic));
 }
 
-std::string RasterScan::run(const StageTask& task) {
+TaskResult RasterScan::run(const Task& task) {
   std::unique_ptr<RasterMosaic> mosaic = take_mosaic();
   const Found found = shape_.raw == RawType::kInt32     ? scan<std::int32_t>(*mosaic, task)
                       : shape_.raw == RawType::kFloat32 ? scan<float>(*mosaic, task)
                                                         : scan<double>(*mosaic, task);
   put_back(std::move(mosaic));
-  return text_of_value(found);
+  TaskResult result;
+  result.told = text_of_value(found);
+  return result;
 }
 
-RasterScan::Joined RasterScan::join(const std::vector<std::string>& results) const {
+RasterScan::Joined RasterScan::join(const TaskResults& results) const {
   HeightScan heights(given(shape_.raw));
   RasterSuspects suspects;
   Found all;
-  for (const std::string& result : results) {
-    const auto found = value_in_text<Found>(result);
+  for (const auto& [name, result] : results) {
+    const auto found = value_in_text<Found>(result.told);
     heights.join(HeightScan(given(shape_.raw), found.heights));
     suspects.join(found.suspects);
     all.low = std::min(all.low, found.low);

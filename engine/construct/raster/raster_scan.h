@@ -11,36 +11,36 @@
 #include <vector>
 
 #include "engine/construct/grid/height_fit.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/raster/raster_mosaic.h"
 #include "engine/construct/raster/raster_suspects.h"
+#include "engine/construct/tasks/task_schedule.h"
 
 namespace ptin {
 
 /// Looks at all samples once, in tasks: bands of so many samples or a few more, from the north. Which
 /// bands there are depends on the raster alone, not on who looks at them.
-class RasterScan final : public StageWorker {
+class RasterScan final : public TaskWorker {
  public:
   static constexpr std::int64_t kBandSamples = std::int64_t{1} << 22;
   explicit RasterScan(RasterMosaic mosaic, std::int64_t band_samples = kBandSamples);
 
-  /// Its sizes count samples.
-  [[nodiscard]] SourceStage stage() const;
+  /// All of them. Their sizes count samples.
+  [[nodiscard]] TaskList tasks() const;
   /// @throws Error  as RasterSource::open()
-  [[nodiscard]] std::string run(const StageTask& task) override;
+  [[nodiscard]] TaskResult run(const Task& task) override;
   /// The findings of all tasks: the encoding, and values that may stand for no height.
   struct Joined {
     HeightFit fit;
     std::vector<RasterSuspects::Suspect> suspects;
   };
-  [[nodiscard]] Joined join(const std::vector<std::string>& results) const;
+  [[nodiscard]] Joined join(const TaskResults& results) const;
 
  private:
   struct Found;
   [[nodiscard]] std::int64_t rows_of_band() const;
   [[nodiscard]] SampleRange band(std::size_t number) const;
   template <class T>
-  [[nodiscard]] Found scan(RasterMosaic& mosaic, const StageTask& task) const;
+  [[nodiscard]] Found scan(RasterMosaic& mosaic, const Task& task) const;
   [[nodiscard]] std::unique_ptr<RasterMosaic> take_mosaic();
   void put_back(std::unique_ptr<RasterMosaic> mosaic);
 

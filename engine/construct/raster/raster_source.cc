@@ -154,10 +154,12 @@ std::unique_ptr<RasterSource::Impl> RasterSource::Impl::opened(
 }
 
 RasterSource RasterSource::open(const std::vector<std::string>& paths, const SourceOptions& options,
-                                const RunStage& run) {
+                                const RunTasks& run) {
   auto impl = Impl::opened(paths, options);
   RasterScan scan(impl->mosaic.duplicate());
-  const RasterScan::Joined found = scan.join(run(scan.stage(), scan));
+  TaskList tasks = scan.tasks();
+  run(tasks, scan);
+  const RasterScan::Joined found = scan.join(tasks.results());
   set_heights(impl->frame, found.fit);
   impl->valid_samples = found.fit.count;
   impl->warnings.join(warnings_that_count(impl->mosaic.warnings(), options));
@@ -165,8 +167,8 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
   return RasterSource(std::move(impl));
 }
 
-std::unique_ptr<StageWorker> RasterSource::open_to_scan(const std::vector<std::string>& paths,
-                                                        const SourceOptions& options) {
+std::unique_ptr<TaskWorker> RasterSource::open_to_scan(const std::vector<std::string>& paths,
+                                                       const SourceOptions& options) {
   return std::make_unique<RasterScan>(std::move(Impl::opened(paths, options)->mosaic));
 }
 

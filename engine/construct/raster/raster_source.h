@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_stage.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
+#include "engine/construct/tasks/task_driver.h"
 
 namespace ptin {
 
@@ -47,10 +47,10 @@ class RasterSource {
   /// caller sets.
   [[nodiscard]] static RasterSource open(const std::vector<std::string>& paths,
                                          const SourceOptions& options,
-                                         const RunStage& run = run_alone);
+                                         const RunTasks& run = run_alone);
   /// What does tasks of that reading in another process.
   /// @throws Error as open()
-  [[nodiscard]] static std::unique_ptr<StageWorker> open_to_scan(
+  [[nodiscard]] static std::unique_ptr<TaskWorker> open_to_scan(
       const std::vector<std::string>& paths, const SourceOptions& options);
 
   /// Writes what open() found out by reading to the file `index`, for take_up() of other processes.

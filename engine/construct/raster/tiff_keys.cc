@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/raster/tiff_keys.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -24,14 +24,15 @@ struct CloseFile {
   void operator()(VSILFILE* file) const noexcept { VSIFCloseL(file); }
 };
 
-/// Reads a TIFF of the byte order of this machine.
+/// Reads a TIFF of either byte order.
 class TiffReader {
  public:
   explicit TiffReader(const std::string& path) : file_(VSIFOpenL(path.c_str(), "rb")) {
     const TiffBytes head = file_ ? read(0, 16) : TiffBytes();
-    if (head.size() < 16 || head[0] != 'I' || head[1] != 'I') {
+    if (head.size() < 16 || head[0] != head[1] || (head[0] != 'I' && head[0] != 'M')) {
       return;
     }
+    is_turned_ = head[0] == 'M';
     const std::uint64_t version = value(head, 2, 2);
     is_big_ = version == 43;
     if (version == 42 || version == 43) {
@@ -39,7 +40,7 @@ class TiffReader {
     }
   }
 
-  /// The bytes of a tag; empty where it is not there.
+  /// The numbers of a tag, or its text, in the byte order of this machine; empty where it is not there.
   [[nodiscard]] TiffBytes content(std::uint16_t tag) const {
     if (directory_ == 0) {
       return {};
@@ -63,14 +64,24 @@ class TiffReader {
     constexpr std::uint64_t kDouble = 12, kShort = 3;
     const std::size_t word = is_big_ ? 8 : 4;
     const std::uint64_t type = value(entries, at + 2, 2);
-    const std::uint64_t bytes =
-        value(entries, at + 4, word) * (type == kDouble ? 8 : (type == kShort ? 2 : 1));
-    const std::size_t begin = at + 4 + word;
-    if (bytes > word) {
-      return read(value(entries, begin, word), bytes);
+    const std::size_t each = type == kDouble ? 8 : (type == kShort ? 2 : 1);
+    const std::uint64_t count = value(entries, at + 4, word);
+    if (count > kMostBytes) {  // before it is multiplied, which may overflow
+      return {};
     }
-    const auto first = entries.begin() + static_cast<std::ptrdiff_t>(begin);
-    return {first, first + static_cast<std::ptrdiff_t>(bytes)};
+    const std::uint64_t bytes = count * each;
+    const std::size_t begin = at + 4 + word;
+    TiffBytes content;
+    if (bytes > word) {
+      content = read(value(entries, begin, word), bytes);
+    } else {
+      const auto first = entries.begin() + static_cast<std::ptrdiff_t>(begin);
+      content.assign(first, first + static_cast<std::ptrdiff_t>(bytes));
+    }
+    for (std::size_t i = 0; is_turned_ && i + each <= content.size(); i += each) {
+      std::reverse(content.data() + i, content.data() + i + each);
+    }
+    return content;
   }
 
   /// Bytes of the file; none where they are not all there.
@@ -82,17 +93,20 @@ class TiffReader {
     return VSIFReadL(into.data(), 1, bytes, file_.get()) == bytes ? into : TiffBytes();
   }
 
-  static std::uint64_t value(const TiffBytes& from, std::size_t at, std::size_t bytes) {
+  [[nodiscard]] std::uint64_t value(const TiffBytes& from, std::size_t at,
+                                    std::size_t bytes) const {
     std::uint64_t number = 0;
-    if (at + bytes <= from.size()) {
-      std::memcpy(&number, from.data() + at, bytes);
+    for (std::size_t i = 0; at + bytes <= from.size() && i < bytes; ++i) {
+      const std::size_t place = is_turned_ ? i : bytes - 1 - i;  // the greatest byte first
+      number = number << 8 | from[at + place];
     }
     return number;
   }
 
   std::unique_ptr<VSILFILE, CloseFile> file_;
   std::uint64_t directory_ = 0;  ///< Where the first directory is; 0 where there is none.
-  bool is_big_ = false;
+  bool is_big_ = false;          ///< BigTIFF: offsets of 64 bits.
+  bool is_turned_ = false;       ///< The greatest byte of a number comes first.
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 
 namespace ptin {
 
-/// The keys in the first directory of a TIFF, of 32 or of 64 bits, in the byte order of this machine;
-/// empty ones where there are none, or where the file is no such TIFF or is damaged.
+/// The keys in the first directory of a TIFF, of 32 or of 64 bits and of either byte order; empty
+/// ones where there are none, or where the file is no TIFF or is damaged.
 /// Cost: four reads.
 [[nodiscard]] GeoTiffKeys keys_of_tiff(const std::string& path);
 

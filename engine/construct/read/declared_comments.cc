@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cstdlib>
 #include <set>
 #include <span>
@@ -15,6 +14,7 @@
 #include "engine/construct/read/text_header.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "engine/number.h"
 
 namespace ptin {
 namespace {
@@ -181,10 +181,8 @@ bool changes_nothing(const std::string& small) {
   bool has_number = false;
   for (std::size_t i = 0; i < small.size();) {
     const std::size_t end = std::min(small.find_first_of(" ,;:=()[]", i), small.size());
-    double number = 0.0;
-    const auto read = std::from_chars(small.data() + i, small.data() + end, number);
-    if (end > i && read.ec == std::errc() && read.ptr == small.data() + end) {
-      if (number != (is_scale ? 1.0 : 0.0)) {
+    if (const auto number = parse_number<double>(std::string_view(small).substr(i, end - i))) {
+      if (*number != (is_scale ? 1.0 : 0.0)) {
         return false;
       }
       has_number = true;
@@ -433,8 +431,7 @@ DeclaredUnits DeclaredComments::units() const {
 }
 
 std::optional<double> DeclaredComments::nodata() const {
-  return nodata_.value.empty() ? std::nullopt
-                               : std::optional(std::strtod(nodata_.value.c_str(), nullptr));
+  return parse_number<double>(nodata_.value);
 }
 
 void DeclaredComments::tell(const std::string& path, SourceWarnings& warnings) const {

@@ -2,11 +2,11 @@
 #include "engine/construct/read/text_rows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <numeric>
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/number.h"
 
 namespace ptin {
 namespace {
@@ -42,9 +42,7 @@ std::int64_t whole_number(std::string_view field) {
   if (field.find_first_not_of('0', std::min(point + 1, field.size())) != std::string_view::npos) {
     return -1;
   }
-  std::int64_t number = 0;
-  const auto [end, fault] = std::from_chars(field.data(), field.data() + point, number);
-  return fault == std::errc() && end == field.data() + point ? number : -1;
+  return parse_number<std::int64_t>(field.substr(0, point)).value_or(-1);
 }
 
 }  // namespace

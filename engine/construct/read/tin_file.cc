@@ -12,6 +12,7 @@
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
+#include "engine/number.h"
 #include "engine/stop.h"
 
 namespace ptin {
@@ -108,15 +109,14 @@ Decimal coordinate_of(float value, const std::string& place) {
 }
 
 std::int64_t whole_of(std::string_view word, const std::string& place) {
-  std::int64_t value = 0;
-  const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (status != std::errc() || end != word.data() + word.size()) {
+  const auto value = parse_number<std::int64_t>(word);
+  if (!value) {
     refuse(word.empty()
                ? "a whole number is absent, where an id or a count belongs"
                : "'" + std::string(word.substr(0, 40)) + "' stands where a whole number belongs",
            place);
   }
-  return value;
+  return *value;
 }
 
 void TinReceiver::refuse_corners(std::uint64_t count, const std::string& place) {

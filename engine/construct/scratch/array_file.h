@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
+#include "engine/construct/scratch/plain_value.h"
 #include "storage/file/file_layer.h"
 #include "storage/file/mapped_file.h"
 #include "storage/file/read_only_file.h"
@@ -40,12 +40,11 @@ class ArrayFileWriter {
   ArrayFileWriter(FileLayer& files, const std::string& path);
 
   /// @throws Error io_error, resource_exhausted
-  template <class T>
+  template <PlainValue T>
   void put(std::span<const T> array) {
-    static_assert(std::is_trivially_copyable_v<T>);
     put_bytes(std::as_bytes(array), sizeof(T));
   }
-  template <class T>
+  template <PlainValue T>
   void put(const std::vector<T>& array) {
     put(std::span<const T>(array));
   }

@@ -16,6 +16,7 @@
 
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/scratch/external_memory.h"
+#include "engine/construct/scratch/plain_value.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "storage/file/checksum.h"
@@ -38,7 +39,8 @@ class RecordFile {
 
   /// In a file of this name, which stays when the object goes.
   /// @throws Error as above, and when a file that is to be new exists already
-  RecordFile(FileLayer& files, const std::string& path, ScratchFile::Kept kept)
+  RecordFile(FileLayer& files, const std::string& path,
+             ScratchFile::Kept kept) requires PlainValue<Record>
       : file_(std::make_unique<ScratchFile>(files, path, kept)) {}
 
   /// @throws Error io_error, resource_exhausted (the disk is full)

@@ -7,8 +7,8 @@ namespace ptin {
 
 namespace {
 
-constexpr std::array<const char*, kTileFiles> kEndings{".pushed", ".segment", ".bounds", ".pages",
-                                                       ".descriptions"};
+constexpr std::array<const char*, kTileFiles> kEndings{".pushed", ".segment",      ".bounds",
+                                                       ".pages",  ".descriptions", ".index"};
 
 std::string numbers_of(const TileId& id) {
   return std::to_string(id.level) + "-" + std::to_string(id.x) + "-" + std::to_string(id.y);
@@ -27,10 +27,20 @@ TileId tile_in(const nlohmann::json& j, std::size_t at) {
 }  // namespace
 
 std::string to_string(const TaskName& name) {
-  static constexpr std::array<const char*, 5> kVerbs{"collapsing", "joining", "tightening",
-                                                     "closing", "placing the pages of"};
-  return std::string(kVerbs[static_cast<std::size_t>(name.kind)]) + " tile " +
-         numbers_of(name.tile);
+  static constexpr std::array<const char*, 9> kVerbs{
+      "scanning band",   "reading portion", "sharing out part",
+      "sorting range",   "collapsing tile", "joining tile",
+      "tightening tile", "closing tile",    "placing the pages of tile"};
+  const std::string verb = kVerbs[static_cast<std::size_t>(name.kind)];
+  return verb + " " +
+         (name.kind < TaskKind::kCollapse ? std::to_string(name.tile.x) : numbers_of(name.tile));
+}
+
+const char* stage_of(TaskKind kind) noexcept {
+  static constexpr std::array<const char*, 9> kStages{"reading",    "reading",    "sharing out",
+                                                      "sorting",    "collapsing", "collapsing",
+                                                      "tightening", "tightening", "writing"};
+  return kStages[static_cast<std::size_t>(kind)];
 }
 
 std::string file_name(const TileId& tile, TileFile file) {
@@ -48,6 +58,7 @@ TaskName producer_of(const TileId& tile, TileFile file) noexcept {
       return {is_batch ? TaskKind::kTighten : TaskKind::kClose, tile};
     case TileFile::kPages:
     case TileFile::kDescriptions:
+    case TileFile::kIndex:
       break;
   }
   return {is_batch ? TaskKind::kCollapse : TaskKind::kClose, tile};
@@ -88,7 +99,12 @@ nlohmann::json json_of(const TaskResult& result) {
   for (const ArrayFileFacts& f : result.files) {
     files.push_back(json_of(f));
   }
-  return {{"files", files}, {"page_bytes", result.page_bytes}, {"lone", result.lone_samples}};
+  nlohmann::json json{
+      {"files", files}, {"page_bytes", result.page_bytes}, {"lone", result.lone_samples}};
+  if (!result.told.empty()) {
+    json["told"] = result.told;
+  }
+  return json;
 }
 
 TaskResult task_result_in(const nlohmann::json& json) {
@@ -98,6 +114,7 @@ TaskResult task_result_in(const nlohmann::json& json) {
   }
   result.page_bytes = json.at("page_bytes").get<std::uint64_t>();
   result.lone_samples = json.at("lone").get<std::uint64_t>();
+  result.told = json.value("told", "");
   return result;
 }
 

@@ -6,20 +6,28 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <stop_token>
-#include <string>
-#include <vector>
 
-#include "engine/construct/grid/source_stage.h"
-#include "engine/construct/tasks/piece_runner.h"
-#include "engine/construct/tasks/stage_runner.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tasks/task_schedule.h"
-#include "engine/construct/tasks/task_worker.h"
 
 namespace ptin {
 
-/// Runs tasks until the schedule has none left.
+/// What the tasks of one process may take.
+struct TaskLimits {
+  int threads = 1;
+  std::uint64_t bytes = ~std::uint64_t{0};  ///< The sum over all tasks that run at once.
+  /// Told that the tasks at work take `bytes`; to give freed memory back to the system where so
+  /// much would not fit beside what the process holds. What a heap keeps of tasks that have ended is
+  /// counted for no task. Called by a thread that must wait (`bytes` includes the task that it waits
+  /// to start), and by one whose next task is larger than its last. May be empty.
+  std::function<void(std::uint64_t bytes)> give_back{};
+};
+
+/// Runs tasks until the schedule has none left: here on threads of this process, as many at once as
+/// memory admits. A task starts whatever its price when no other runs, and else only within the
+/// limit.
 class TaskDriver {
  public:
   TaskDriver() = default;
@@ -27,34 +35,28 @@ class TaskDriver {
   TaskDriver& operator=(const TaskDriver&) = delete;
   virtual ~TaskDriver() = default;
 
-  /// Told of the build before the first stage of reading, without what reading finds out. By default
-  /// it does nothing.
-  virtual void begin_reading(const BuildNote& note);
-  /// How many processes do the tasks of reading at once.
-  [[nodiscard]] virtual std::size_t processes_that_read() const noexcept { return 1; }
-  /// Has a stage of reading done: by default on threads of this process.
-  /// @param worker  Does its tasks in this process.
-  /// @throws Error  as RunStage
-  [[nodiscard]] virtual std::vector<std::string> run_stage(const SourceStage& stage,
-                                                           StageWorker& worker,
-                                                           const StageLimits& limits);
-  /// Told of the build before the first task of its tiles. By default it does nothing.
+  /// Told of the build before the first task of reading, then without the index that reading makes,
+  /// and before the first task of its tiles. By default it does nothing.
   /// @return  False: the build ends here, and its folder stays for those who do the tasks.
   [[nodiscard]] virtual bool begin(const BuildNote& note);
+  /// How many processes do the tasks of reading at once.
+  [[nodiscard]] virtual std::size_t processes_that_read() const noexcept { return 1; }
+  /// After an error nothing more begins. Tasks that were begun later than the one that met it are
+  /// stopped, and those that were begun before it go on to their end, since their errors come first.
   /// @param worker  Does tasks in this process.
   /// @param limits  Of this process.
   /// @return The most bytes that were admitted at once in this process, by estimate.
-  /// @throws Error cancelled  `stop` fired; and whatever a task or the schedule throws, but for
-  ///     DamagedInput, of which the schedule is told
-  virtual std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
-                            const std::stop_token& stop) = 0;
+  /// @throws Error cancelled  `stop` fired; and whatever a task, the schedule or give_back throws,
+  ///     but for DamagedInput, of which the schedule is told: of several errors that of the task
+  ///     that was handed out first
+  virtual std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const TaskLimits& limits,
+                            const std::stop_token& stop);
 };
 
-/// Threads of this process, as many at once as memory admits (piece_runner.h).
-class ThreadDriver final : public TaskDriver {
- public:
-  std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const PieceLimits& limits,
-                    const std::stop_token& stop) override;
-};
+/// Has all tasks of a list done, by whomever.
+/// @throws Error  as TaskDriver::run()
+using RunTasks = std::function<void(TaskList& tasks, TaskWorker& worker)>;
+/// One task after the other, on this thread.
+void run_alone(TaskList& tasks, TaskWorker& worker);
 
 }  // namespace ptin

@@ -2,7 +2,6 @@
 #include "engine/construct/tasks/task_messages.h"
 
 #include "engine/construct/tasks/task_schedule.h"
-#include "engine/construct/tasks/task_worker.h"
 
 namespace ptin {
 
@@ -39,17 +38,13 @@ BuildNote note_in(const std::string& message) {
 
 std::string message_of(const Task& task) { return text_of(json_of(task)); }
 
-std::uint64_t bytes_of_task(const std::string& message) {
-  return task_in(nlohmann::json::parse(message)).bytes;
-}
+Task task_in_message(const std::string& message) { return task_in(nlohmann::json::parse(message)); }
 
 std::string answer_of(const Error& error) { return text_of({{"error", json_of(error)}}); }
 
-std::string answer_to(const std::string& message, TaskWorker& worker, std::size_t thread,
-                      const std::stop_token& stop) {
+std::string answer_to(const Task& task, TaskWorker& worker) {
   try {
-    const Task task = task_in(nlohmann::json::parse(message));
-    return text_of(json_of(worker.run(task, thread, stop)));
+    return text_of(json_of(worker.run(task)));
   } catch (const DamagedInput& e) {
     const InputFile input{e.tile(), e.file(), {}};
     return text_of({{"damaged", json_of(TaskName{TaskKind::kPlace, input.tile})},
@@ -60,46 +55,17 @@ std::string answer_to(const std::string& message, TaskWorker& worker, std::size_
   }
 }
 
-std::string message_of(const SourceStage& stage, std::size_t number) {
-  return text_of({{"stage", stage.name}, {"number", number}, {"facts", stage.facts}});
-}
-
-std::string answer_to(const std::string& message, StageWorker& worker, std::uint64_t memory,
-                      const std::stop_token& stop) {
-  try {
-    const nlohmann::json json = nlohmann::json::parse(message);
-    return text_of({{"told", worker.run({json.at("stage").get<std::string>(),
-                                         json.at("number").get<std::size_t>(),
-                                         json.at("facts").get<std::string>(),
-                                         memory,
-                                         stop,
-                                         {}})}});
-  } catch (const Error& e) {
-    return answer_of(e);
-  }
-}
-
-std::string told_in(const std::string& answer) {
-  const nlohmann::json json = nlohmann::json::parse(answer);
-  if (json.contains("error")) {
-    throw error_in(json["error"]);
-  }
-  return json.at("told").get<std::string>();
-}
-
-bool take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
+void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule) {
   const nlohmann::json json = nlohmann::json::parse(answer);
   if (json.contains("damaged")) {
     const InputFile input{
         task_name_in(json["damaged"]).tile, static_cast<TileFile>(json.at("file").get<int>()), {}};
     schedule.failed(name, DamagedInput(input, error_in(json.at("error"))));
-    return false;
-  }
-  if (json.contains("error")) {
+  } else if (json.contains("error")) {
     throw error_in(json["error"]);
+  } else {
+    schedule.done(name, task_result_in(json));
   }
-  schedule.done(name, task_result_in(json));
-  return true;
 }
 
 }  // namespace ptin

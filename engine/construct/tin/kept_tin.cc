@@ -2,7 +2,6 @@
 //
 // The sorted triangles of a TIN that outlive the process.
 #include <array>
-#include <type_traits>
 
 #include "engine/construct/grid/frame_file.h"
 #include "engine/construct/grid/warnings_file.h"
@@ -36,7 +35,6 @@ std::array<std::string, 3> TinTriangles::kept_files(const std::string& stem) {
 }
 
 ArrayFileFacts TinTriangles::save(FileLayer& files, const std::string& index) {
-  static_assert(std::is_trivially_copyable_v<Kept>);
   surface_->sync();
   voids_->sync();
   places_->sync();

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/geometry/infinity.h"
+#include "engine/memory_units.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -22,7 +23,7 @@ struct ClassChangesRequest {
   /// How far along x and along y, in map units, the border between surface and void may be from
   /// that of the finest TIN, either way. What is farther from a border than that is not looked at.
   std::array<double, 2> reach{kInfinity, kInfinity};
-  QueryLimits limits{.memory_bytes = std::uint64_t{1} << 30};  ///< Of one part of the terrain.
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Of one part of the terrain.
 };
 
 /// Samples are the vertices of the finest TIN of the file. One with a surface triangle is surface,

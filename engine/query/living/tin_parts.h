@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/geometry/box.h"
+#include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
 #include "engine/query/living/grid_cell.h"
 #include "engine/query/living/living_triangle.h"
@@ -23,7 +24,7 @@ namespace ptin {
 struct PartRequest {
   std::optional<Region> region;  ///< What to look at, map units; none: everything.
   DetailRequest detail;          ///< The TIN of which the parts are, the same for every region.
-  QueryLimits limits{.memory_bytes = std::uint64_t{1} << 30};  ///< Of one part.
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Of one part.
 };
 
 /// The parts of a TIN, one after the other. Threads: one owner.

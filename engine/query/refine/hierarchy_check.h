@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/memory_units.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/query_limits.h"
 #include "storage/verify.h"
@@ -19,7 +20,7 @@ struct HierarchyRequest {
   /// Memory of one cell: records, mesh and what is noted beside them. A file of any size is checked
   /// in as many cells as that takes; they are of about 64 MiB where that is less, since the mesh
   /// then stays in the caches.
-  QueryLimits limits{.memory_bytes = std::uint64_t{1} << 30};
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};
   /// The check ends when one fault more than this is found.
   std::size_t max_faults = 100;
   /// Called after each cell: the share of the terrain's area that is done.

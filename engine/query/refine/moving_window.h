@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
 #include "engine/query/refine/page_cache.h"
 #include "engine/query/refine/refinement.h"
@@ -24,7 +25,7 @@ namespace ptin {
 struct MovingWindowOptions {
   /// Most bytes for the mesh, the records that a move retrieves, and the page cache. The need is
   /// known before a page is read.
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t memory_bytes = kMemoryOfQuestion;
   /// The part of memory_bytes for pages that are kept between moves: 72 bytes a record. The pages
   /// used longest ago are dropped, and read again when a move needs them.
   std::uint64_t page_cache_bytes = std::uint64_t{256} << 20;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <stop_token>
 
+#include "engine/memory_units.h"
+
 namespace ptin {
 
 /// How much a question may take, and how it is stopped.
@@ -13,7 +15,7 @@ struct QueryLimits {
   /// Most bytes that the question may hold: records, mesh and results. Records and mesh are known
   /// from the index before a page is read, results as they grow; a question that needs more is
   /// refused (resource_exhausted).
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;
+  std::uint64_t memory_bytes = kMemoryOfQuestion;
   std::stop_token stop{};  ///< Looked at in every long loop.
 };
 

@@ -107,13 +107,16 @@ TEST(PointsOverTiles, KeepTheirPromisesWithAlmostNothingInATile) {
 }
 
 TEST(PointsOverTiles, KeepTheirPromisesWithVoids) {
-  expect_promises({PointKind::kEven, 600, 8, 200.0});
-  expect_promises({PointKind::kEven, 600, 8, 60.0, CostModel::kElevation});
-  expect_promises({PointKind::kClusters, 600, 8, 2000.0});
-  expect_promises({PointKind::kCorridor, 600, 8, 4000.0});
-  expect_promises({PointKind::kGrid, 900, 8, 1.4});  // no triangle is left
-  expect_promises({PointKind::kGrid, 900, 8, 1.5});  // no voids
-  expect_promises({PointKind::kOutliers, 1200, 8, 300.0});
+  const std::vector<Case> cases = {{PointKind::kEven, 600, 8, 200.0},
+                                   {PointKind::kEven, 600, 8, 60.0, CostModel::kElevation},
+                                   {PointKind::kClusters, 600, 8, 2000.0},
+                                   {PointKind::kCorridor, 600, 8, 4000.0},
+                                   {PointKind::kGrid, 900, 8, 1.4},  // no triangle is left
+                                   {PointKind::kGrid, 900, 8, 1.5},  // no voids
+                                   {PointKind::kOutliers, 1200, 8, 300.0}};
+  for (const Case& c : test::some_of(cases)) {
+    expect_promises(c);
+  }
 }
 
 TEST(PointsOverTiles, GiveTheSameBytesForAnyNumberOfThreads) {

@@ -6,6 +6,7 @@
 
 #include "tests/construct/delaunay/tiled_delaunay.h"
 #include "tests/construct/point_sets.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -13,13 +14,13 @@ namespace {
 class EveryKind : public testing::TestWithParam<PointKind> {};
 
 TEST_P(EveryKind, TilesAreOneTriangulation) {
-  for (const std::uint64_t tiles : {1, 16, 64}) {
+  for (const std::uint64_t tiles : test::some_of<std::uint64_t>({1, 16, 64})) {
     expect_one_triangulation(buckets_of(GetParam(), 8000, 7), tiles);
   }
 }
 
 TEST_P(EveryKind, TilesOfFewPointsAreOneTriangulation) {
-  for (const std::uint64_t n : {3, 4, 5, 17, 100, 1000}) {
+  for (const std::uint64_t n : test::some_of<std::uint64_t>({3, 4, 5, 17, 100, 1000})) {
     for (const std::uint64_t tiles : {2, 7, 64}) {
       expect_one_triangulation(buckets_of(GetParam(), n, n), tiles);
     }

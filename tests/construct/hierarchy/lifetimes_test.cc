@@ -20,7 +20,7 @@
 #include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/stored_detail.h"
-#include "engine/construct/tasks/build_hierarchy.h"
+#include "engine/construct/tile_tasks/build_hierarchy.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/construct/tin/tin_tile.h"
 #include "engine/error.h"
@@ -139,7 +139,7 @@ class Hills {
 };
 
 TEST(Lifetimes, AreThoseOfTheSplitsOverRasters) {
-  for (const bool voids : {false, true}) {
+  for (const bool voids : test::some_of({false, true})) {
     const Hills hills(65, voids ? 2U : 1U, voids);
     for (const std::int64_t side :
          test::some_of<std::int64_t>({8, 20, 1000})) {  // levels 0 to 3, 0 to 2, and 0 alone
@@ -196,13 +196,13 @@ BuiltStars build_in_steps(const Source& source, std::uint64_t leaves, int thread
 TEST(Lifetimes, DoNotDependOnInterruptions) {
   const Hills hills(65, 4, true);
   const Source source = hills.tiled(8);
-  for (const int threads : {1, 3}) {
+  for (const int threads : test::some_of({1, 3})) {
     expect_same(build_stars(source), build_in_steps(source, 13, threads));
   }
 }
 
 TEST(Lifetimes, EndWithWhatTheFileLeavesOut) {
-  for (const bool voids : {false, true}) {
+  for (const bool voids : test::some_of({false, true})) {
     const Hills hills(65, 5, voids);
     for (const StoredDetail detail :
          test::some_of<StoredDetail>({{0.0, 20.0}, {0.25, 20.0}, {0.25, 0.0}})) {
@@ -229,7 +229,8 @@ TEST(Lifetimes, EndWithWhatTheFileLeavesOut) {
 
 TEST(Lifetimes, AreThoseOfTheSplitsOverPoints) {
   for (const PointKind kind : test::some_of(kPointKinds)) {
-    for (const std::optional<double> max_edge : {std::optional<double>(), {400.0}}) {
+    for (const std::optional<double> max_edge :
+         test::some_of<std::optional<double>>({std::nullopt, 400.0})) {
       SCOPED_TRACE(name_of(kind) + (max_edge ? ", voids" : ""));
       const PointBuckets points = buckets_of(kind, 900, 3);
       Source source{point_tree(points, 5), measure_units(points.frame(), 0.1), {}};

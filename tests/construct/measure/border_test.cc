@@ -60,7 +60,7 @@ TEST(Border, OfMadeShapesMovesByNoMoreThanTheToleranceAllows) {
   for (const RasterSpec& spec : test::some_of(shapes())) {
     SCOPED_TRACE(spec.name);
     const TestTerrain terrain = oracle::simplified(oracle::make_raster(spec));
-    for (const double tolerance : {0.0, 0.4, 0.75, 1.0, 2.0, 3.0, 6.0, 12.0}) {
+    for (const double tolerance : test::some_of({0.0, 0.4, 0.75, 1.0, 2.0, 3.0, 6.0, 12.0})) {
       std::string fault;
       const Tin tin = oracle::refined(
           terrain.tile.tin, terrain.tile.records,

@@ -60,7 +60,8 @@ TEST(PointBuckets, HoldThePointsOfTheSource) {
       expect_same(file.path(), options, memory, small_sorting());
     }
     options.resolution = 7.0;
-    for (const PointMerge rule : {PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst}) {
+    for (const PointMerge rule :
+         test::some_of({PointMerge::kLowest, PointMerge::kHighest, PointMerge::kFirst})) {
       options.merge = rule;
       expect_same(file.path(), options, 1 << 18);
       expect_same(file.path(), options, 1 << 16, small_sorting());
@@ -102,12 +103,13 @@ TEST(PointSource, SaysThatAFolderIsMissing) {
 
 TEST(PointSource, StopsInEveryStageAndLeavesNothingBehind) {
   const MemoryFile file("set.xyz", text_of(points_of(PointKind::kEven, 5000, 1)));
-  for (const std::string at : {kReadingStage, kSharingStage, kSortingStage}) {
+  for (const TaskKind kind : {TaskKind::kRead, TaskKind::kShare, TaskKind::kSort}) {
+    const std::string at = stage_of(kind);
     SCOPED_TRACE(at);
     const oracle::ScratchFolder folder, kept;
     std::stop_source stop;
-    const auto progress = [&](const std::string& stage, std::uint64_t, std::uint64_t) {
-      if (stage == at) {
+    const auto progress = [&](const StageProgress& told) {
+      if (told.stage == at) {
         stop.request_stop();
       }
     };

@@ -18,12 +18,12 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/point_source.h"
-#include "engine/construct/tasks/stage_runner.h"
 #include "engine/error.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/memory_file.h"
 #include "tests/construct/point_sets.h"
 #include "tests/construct/read_buckets.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -134,7 +134,7 @@ Written written_in(const ScratchFolder& folder) {
 }
 
 /// Sorts, has the tasks run as `run` says, and returns what stays.
-Written sorted_by(const RunStage& run, const std::vector<std::string>& paths,
+Written sorted_by(const RunTasks& run, const std::vector<std::string>& paths,
                   const SourceOptions& options) {
   const ScratchFolder folder(ScratchFolder::Size::kSmall);
   PointWork work{{FileLayer::system(), folder.path()}, run, {}, 0};
@@ -151,25 +151,23 @@ Written sorted_by(const RunStage& run, const std::vector<std::string>& paths,
 }
 
 /// Does tasks in another order, some of them twice, each with a worker that knows nothing of the others.
-RunStage shuffled(const std::vector<std::string>& paths, const SourceOptions& options,
+RunTasks shuffled(const std::vector<std::string>& paths, const SourceOptions& options,
                   const std::string* folder) {
-  return [=](const SourceStage& stage, StageWorker&) {
-    std::vector<std::size_t> order(stage.sizes.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::mt19937_64 random(order.size());
-    for (std::size_t i = order.size(); i > 1; --i) {
-      std::swap(order[i - 1], order[random() % i]);
-    }
-    order.insert(order.end(), order.begin(), order.begin() + (order.size() + 1) / 2);
-    std::vector<std::string> told(stage.sizes.size());
-    for (const std::size_t number : order) {
+  return [=](TaskList& list, TaskWorker&) {
+    std::vector<Task> tasks = test::taken_from(list);
+    std::mt19937_64 random(tasks.size());
+    std::shuffle(tasks.begin(), tasks.end(), random);
+    const std::vector<Task> again(tasks.begin(), tasks.begin() + (tasks.size() + 1) / 2);
+    tasks.insert(tasks.end(), again.begin(), again.end());
+    std::map<TaskName, ArrayFileFacts> found;
+    for (Task& task : tasks) {
       PointTasks other(paths, options, {FileLayer::system(), *folder});
-      const std::string result =
-          other.run({stage.name, number, stage.facts, number * 10'000, {}, {}});
-      EXPECT_TRUE(told[number].empty() || told[number] == result) << stage.name << number;
-      told[number] = result;
+      task.bytes = number_of(task.name) * 10'000;
+      const TaskResult result = other.run(task);
+      const ArrayFileFacts& facts = result.facts(TileFile::kIndex);
+      EXPECT_EQ(found.try_emplace(task.name, facts).first->second, facts) << to_string(task.name);
+      list.done(task.name, result);
     }
-    return told;
   };
 }
 
@@ -179,16 +177,11 @@ TEST(PointStages, WriteTheSameBytesByWhomeverTheyAreDone) {
       second("second.xyz", text_of(points_of(PointKind::kDuplicates, 10'000, 4)));
   const std::vector<std::string> paths{first.path(), second.path()};
   SourceOptions options;
-  for (const PointMerge rule : {PointMerge::kMean, PointMerge::kFirst}) {
+  for (const PointMerge rule : test::some_of({PointMerge::kMean, PointMerge::kFirst})) {
     options.merge = rule;
     const Written alone = sorted_by(run_alone, paths, options);
     for (const int threads : {1, 2, 3}) {
-      EXPECT_EQ(sorted_by(
-                    [&](const SourceStage& stage, StageWorker& worker) {
-                      return run_stage(stage, worker, {threads, 1 << 20, {}, {}});
-                    },
-                    paths, options),
-                alone)
+      EXPECT_EQ(sorted_by(test::on_threads(threads, (1 << 20) / threads), paths, options), alone)
           << threads;
     }
   }
@@ -263,18 +256,18 @@ TEST(PointStages, SortOnceMoreFromWhatWasRead) {
   lines.rings_are_flat = true;
   SourceOptions options;
   options.lines = &lines;
-  std::map<std::string, int> stages;
-  const auto run = [&](const SourceStage& stage, StageWorker& worker) {
-    ++stages[stage.name];
-    return run_alone(stage, worker);
+  std::map<TaskKind, int> stages;
+  const auto run = [&](TaskList& tasks, TaskWorker& worker) {
+    run_alone(tasks, worker);
+    ++stages[tasks.results().begin()->first.kind];
   };
   PointSource source({file.path()}, options, {{FileLayer::system(), folder.path()}, run, {}, 0});
   EXPECT_EQ(source.sort(folder.file("below"), false).counts().left_out.total(), 0U);
   lines.rings_are_flat = false;
   const PointBuckets twice = source.sort(folder.file("buckets"), true);
   const PointBuckets once = read_buckets({file.path()}, options);
-  EXPECT_EQ(stages[kReadingStage], 1);
-  EXPECT_EQ(stages[kSortingStage], 2);
+  EXPECT_EQ(stages[TaskKind::kRead], 1);
+  EXPECT_EQ(stages[TaskKind::kSort], 2);
   EXPECT_EQ(twice.size(), once.size());
   EXPECT_EQ(twice.counts().left_out.total(), once.counts().left_out.total());
 }
@@ -347,15 +340,14 @@ class DamagedStages {
 
   [[nodiscard]] PointWork work() {
     return {{FileLayer::system(), folder_.path()},
-            [this](const SourceStage& stage, StageWorker&) {
+            [this](TaskList& tasks, TaskWorker&) {
               damage();
               PointTasks other({source_.path()}, {}, {FileLayer::system(), folder_.path()});
-              std::vector<std::string> told = run_alone(stage, other);
-              if (stage.name == kReadingStage) {
+              run_alone(tasks, other);
+              if (tasks.results().begin()->first.kind == TaskKind::kRead) {
                 is_new_ = true;
               }
               damage();
-              return told;
             },
             {},
             0};
@@ -431,12 +423,7 @@ TEST(PointStages, OfFilesThatAreWrongNameTheFirst) {
   const MemoryFile good("good.xyz", "0 0 1\n"), slow("slow.xyz", many + "bad 1 1\n"),
       quick("quick.xyz", "1 bad 1\n");
   const ScratchFolder folder(ScratchFolder::Size::kSmall);
-  PointWork work{{FileLayer::system(), folder.path()},
-                 [](const SourceStage& stage, StageWorker& worker) {
-                   return run_stage(stage, worker, {3, 1 << 20, {}, {}});
-                 },
-                 {},
-                 0};
+  PointWork work{{FileLayer::system(), folder.path()}, test::on_threads(3, 1 << 18), {}, 0};
   work.portions = {1000, 10};
   for (int i = 0; i < 5; ++i) {
     try {
@@ -473,13 +460,12 @@ TEST(PointStages, TakeNoMoreDiskThanIsPlanned) {
     SourceOptions options;
     options.merge = rule;
     std::uint64_t most = 0;
-    const auto run = [&](const SourceStage& stage, StageWorker& worker) {
-      std::vector<std::string> told;
-      for (std::size_t i = 0; i < stage.sizes.size(); ++i) {
-        told.push_back(worker.run({stage.name, i, stage.facts, 0, {}, {}}));
+    const auto run = [&](TaskList& tasks, TaskWorker& worker) {
+      for (Task& task : test::taken_from(tasks)) {
+        task.bytes = 0;
+        tasks.done(task.name, worker.run(task));
         most = std::max(most, bytes_in(folder));
       }
-      return told;
     };
     PointSource source({file.path()}, options, {{FileLayer::system(), folder.path()}, run, {}, 0});
     std::ignore = source.sort(folder.file("buckets"), true);

@@ -8,21 +8,9 @@
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/source_options.h"
-#include "engine/construct/grid/source_stage.h"
-#include "engine/construct/tasks/stage_runner.h"
+#include "tests/construct/task_runs.h"
 
 namespace ptin::raster_fixture {
-
-namespace {
-
-/// On this thread, until the token fires.
-RunStage run_until(const std::stop_token& stop) {
-  return [stop](const SourceStage& stage, StageWorker& worker) {
-    return run_stage(stage, worker, {1, 0, stop, {}});
-  };
-}
-
-}  // namespace
 
 std::string write(const Made& made) {
   GDALAllRegister();
@@ -103,7 +91,8 @@ void expect_heights(const RasterSource& source, const Heights& expected) {
 }
 
 Error open_error(const std::vector<std::string>& paths, std::stop_token stop) {
-  return error_of([&] { std::ignore = RasterSource::open(paths, {}, run_until(stop)); });
+  return error_of(
+      [&] { std::ignore = RasterSource::open(paths, {}, test::on_threads(1, 0, stop)); });
 }
 
 void expect_refused(const Made& made, const std::string& word, const SourceOptions& options) {

@@ -9,9 +9,9 @@
 
 #include <sys/resource.h>
 
-#include "engine/construct/tasks/stage_runner.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/raster/raster_fixture.h"
+#include "tests/construct/task_runs.h"
 
 namespace ptin {
 namespace {
@@ -183,15 +183,12 @@ TEST(RasterSource, StopsWhenAsked) {
 
 TEST(RasterSource, ReportsItsProgressToTheEnd) {
   std::uint64_t last = 0, all = 0;
-  const auto progress = [&](std::uint64_t done, std::uint64_t total) {
-    EXPECT_GT(done, last);
-    last = done;
-    all = total;
+  const auto progress = [&](const StageProgress& told) {
+    EXPECT_GT(told.done, last);
+    last = told.done;
+    all = told.total;
   };
-  std::ignore =
-      RasterSource::open({write(small())}, {}, [&](const SourceStage& stage, StageWorker& worker) {
-        return run_stage(stage, worker, {1, 0, {}, progress});
-      });
+  std::ignore = RasterSource::open({write(small())}, {}, test::on_threads(1, 0, {}, progress));
   EXPECT_EQ(last, 6U);
   EXPECT_EQ(all, 6U);
 }

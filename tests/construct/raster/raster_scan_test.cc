@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/construct/tasks/stage_runner.h"
 #include "tests/construct/raster/raster_fixture.h"
+#include "tests/construct/task_runs.h"
 
 namespace ptin {
 namespace {
@@ -34,19 +34,17 @@ Made wavy(GDALDataType type, double step) {
 /// What bands of so many samples find, done in a shuffled order and each twice.
 HeightFit fit_in_bands(const Made& made, std::int64_t samples, std::size_t least_bands) {
   RasterScan scan(RasterMosaic({write(made)}, {}), samples);
-  const SourceStage stage = scan.stage();
-  EXPECT_GE(stage.sizes.size(), least_bands);
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < stage.sizes.size(); ++i) {
-    order.insert(order.end(), 2, i);
-  }
+  TaskList list = scan.tasks();
+  std::vector<Task> tasks = test::taken_from(list);
+  EXPECT_GE(tasks.size(), least_bands);
+  const std::vector<Task> again = tasks;
+  tasks.insert(tasks.end(), again.begin(), again.end());
   std::mt19937 random(7);
-  std::shuffle(order.begin(), order.end(), random);
-  std::vector<std::string> results(stage.sizes.size());
-  for (const std::size_t number : order) {
-    results[number] = scan.run({stage.name, number, stage.facts, 0, {}, {}});
+  std::shuffle(tasks.begin(), tasks.end(), random);
+  for (const Task& task : tasks) {
+    list.done(task.name, scan.run(task));
   }
-  return scan.join(results).fit;
+  return scan.join(list.results()).fit;
 }
 
 void expect_same(const HeightFit& a, const HeightFit& b) {
@@ -88,9 +86,9 @@ TEST(RasterScan, NamesTheFirstOfSeveralHeightsThatAreInfinite) {
   Made made = wavy(GDT_Float32, 1);
   made.values[70 * 45 + 3] = made.values[70 * 8 + 5] = INFINITY;
   RasterScan scan(RasterMosaic({write(made)}, {}), 70);
-  const SourceStage stage = scan.stage();
   for (const int threads : {1, 3}) {
-    const Error e = error_of([&] { std::ignore = run_stage(stage, scan, {threads, 0, {}, {}}); });
+    TaskList tasks = scan.tasks();
+    const Error e = error_of([&] { test::on_threads(threads)(tasks, scan); });
     EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
     EXPECT_NE(e.message().find("column 5, row 8 "), std::string::npos) << e.message();
   }
@@ -98,7 +96,11 @@ TEST(RasterScan, NamesTheFirstOfSeveralHeightsThatAreInfinite) {
 
 TEST(RasterScan, RefusesWhatAnotherProgramTells) {
   const RasterScan scan(RasterMosaic({write(small())}, {}));
-  EXPECT_EQ(error_of([&] { std::ignore = scan.join({"00ff"}); }).code(),
+  TaskResult result;
+  result.told = "00ff";
+  EXPECT_EQ(error_of([&] {
+              std::ignore = scan.join({{numbered(TaskKind::kScan, 0), result}});
+            }).code(),
             ErrorCode::invalid_argument);
 }
 

@@ -19,6 +19,7 @@
 #include "engine/mesh/validate.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/construct/tin/tin_fixture.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -333,7 +334,7 @@ std::int64_t area_of(const std::vector<GridPoint>& corners) {
 TEST(TinSource, FillsBordersOfEverySizeWhateverTheMemory) {
   constexpr std::uint64_t kMost = TinTriangles::kMostBorderInMemory;
   constexpr std::uint64_t kEnough = kMost * TinTriangles::kBytesOfBorderEdge;
-  for (const std::uint64_t border : {kMost - 1, kMost, kMost + 1, kMost + 2}) {
+  for (const std::uint64_t border : test::some_of({kMost - 1, kMost, kMost + 1, kMost + 2})) {
     SCOPED_TRACE(border);
     const TestFile file = strip_of(border);
     const TinTriangles triangles = triangles_in(file.path(), {}, kEnough);

@@ -160,7 +160,7 @@ TEST(TinsOverTiles, GiveTheSameBytesWithAnyThreadsAndMemoryAndAfterAStop) {
   resources.memory_bytes = std::uint64_t{160} << 20;
 #endif
   EXPECT_TRUE(built("small", resources) == expected);
-  for (const std::uint64_t moment : {1, 40, 200, 900}) {
+  for (const std::uint64_t moment : test::some_of<std::uint64_t>({1, 40, 200, 900})) {
     std::stop_source stop;
     resources.stop = stop.get_token();
     resources.checkpoint_interval = std::chrono::milliseconds(0);

@@ -18,6 +18,7 @@
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -176,7 +177,7 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
   const StoreFacts& facts = terrain.store().facts();
   const Tin full = terrain.refine({}).tin;
   std::mt19937_64 random(11);
-  for (int i = 0; i < 40; ++i) {
+  for (const std::uint64_t i : test::some_of_first(40, 3)) {
     HighestRequest request;
     request.region = window_in(random, facts);
     request.lowest = i % 2 == 0;
@@ -257,8 +258,7 @@ std::uint64_t pages_of_one_point(const Terrain& terrain, const HighestRequest& r
                                  MapPoint point) {
   LocateRequest where;
   where.detail.vertices = request.detail.vertices;
-  where.by = AnswerBy::kSplits;
-  return locate(terrain, {&point, 1}, where).cost.io.pages;
+  return terrain.locate({&point, 1}, where, AnswerBy::kSplits).cost.io.pages;
 }
 
 // Finding the last of the first so many vertices reads most of their pages: more than all else.

@@ -130,7 +130,7 @@ Hierarchy small_hierarchy(std::uint64_t seed) {
 }
 
 TEST(Volume, OfALevelIsThatOfAllTriangles) {
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (const std::uint64_t seed : test::some_of_first(12)) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const Hierarchy h = small_hierarchy(seed);
@@ -156,7 +156,7 @@ Hierarchy other_hierarchy(std::uint64_t seed, std::mt19937_64& random, const Sto
 }
 
 TEST(Volume, OfAnOverlayIsThatOfAllPairs) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (const std::uint64_t seed : test::some_of_first(6)) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const Hierarchy a = small_hierarchy(seed);
@@ -273,7 +273,7 @@ TEST(Volume, OfSeveralLevelsIsThatOfEachByItself) {
   expect_each_by_itself(coast, request, levels);
   request.region = part;
   expect_each_by_itself(coast, request, levels);
-  for (const double tolerance : {1.0, 20.0}) {
+  for (const double tolerance : test::some_of({1.0, 20.0})) {
     request.detail.tolerance = tolerance;
     expect_each_by_itself(coast, request, levels);
   }
@@ -283,7 +283,7 @@ TEST(Volume, OfSeveralLevelsIsThatOfEachByItself) {
 }
 
 TEST(Volume, OfSeveralLevelsIsThatOfEachOnRandomTerrains) {
-  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+  for (const std::uint64_t seed : test::some_of_first(24, 3)) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const Hierarchy h = small_hierarchy(seed);

@@ -33,6 +33,7 @@ after(async () => {
   await slow?.close();
 });
 
+// A processor draws here, each vertex of each picture: where detail is not the subject a page opens at an error (`#error=5`).
 const wide = { viewport: { width: 1100, height: 720 } };
 const phone = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true, deviceScaleFactor: 2 };
 
@@ -141,7 +142,7 @@ test('what answers questions comes with the first of them, once, and again where
     response.writeHead(404).end('not here');
     return true;
   } });
-  const { page } = await opened(server.url);
+  const { page } = await opened(`${server.url}#error=5`);
   await complete(page);
   assert.equal(fetched, 0, 'nothing is asked yet');
   await page.mouse.click(640, 380);
@@ -273,7 +274,7 @@ test('what is wrong is said in a sentence', async () => {
 
 test('nothing is wider than a phone, and axe finds no serious fault', async () => {
   for (const options of [phone, wide, { ...wide, colorScheme: 'dark' as const, reducedMotion: 'reduce' as const }]) {
-    const { page, faults } = await opened(fast.url, options);
+    const { page, faults } = await opened(`${fast.url}#error=5`, options);
     await complete(page);
     await page.keyboard.press('p');
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
@@ -521,7 +522,7 @@ function worstInSight({ frame: f, positions: p, corners, seen: e }: Drawn): { sa
 }
 
 test('the camera stays above the ground', async () => {
-  const { page } = await opened(fast.url);
+  const { page } = await opened(`${fast.url}#error=20`);
   await complete(page);
   await page.mouse.move(640, 380);
   const above = (): Promise<number> => page.evaluate(() => {
@@ -557,7 +558,7 @@ test('from a folder the page says that it needs a host', async () => {
 });
 
 test('keys tilt, leave no ring, and the pointer costs nothing while it moves', async () => {
-  const { page } = await opened(fast.url);
+  const { page } = await opened(`${fast.url}#error=5`);
   await complete(page);
   const tilt = (): Promise<number> => page.evaluate(() =>
     (window as unknown as { ptinViewer: { view: { current(exaggeration: number): { tilt: number } } } }).ptinViewer.view.current(1).tilt);
