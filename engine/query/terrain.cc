@@ -16,13 +16,9 @@ RefinedTin Terrain::refine(const RefineRequest& request) const {
 
 TinParts Terrain::parts(PartRequest request) const { return TinParts(*this, std::move(request)); }
 
-MovingWindow Terrain::moving_window() const { return moving_window({}); }
-
 MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
   return MovingWindow(*this, options);
 }
-
-LocateResult Terrain::locate(std::span<const MapPoint> points) const { return locate(points, {}); }
 
 LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request,
                              AnswerBy by) const {
@@ -30,15 +26,9 @@ LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateReque
                           : ptin::locate(*this, points, request);
 }
 
-ProfileResult Terrain::profile(std::span<const MapPoint> line) const { return profile(line, {}); }
-
 ProfileResult Terrain::profile(std::span<const MapPoint> line,
                                const ProfileRequest& request) const {
   return ptin::profile(*this, line, request);
-}
-
-ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines) const {
-  return profile(lines, {});
 }
 
 ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
@@ -55,8 +45,6 @@ RasterResult Terrain::raster(const RasterRequest& request, std::span<double> hei
   return ptin::raster(*this, request, heights, states);
 }
 
-HighestResult Terrain::highest() const { return highest({}); }
-
 HighestResult Terrain::highest(const HighestRequest& request) const {
   return ptin::highest(*this, request);
 }
@@ -65,17 +53,11 @@ ClassChanges Terrain::class_changes(const ClassChangesRequest& request) const {
   return ptin::class_changes(*this, request);
 }
 
-SightResult Terrain::sight(const SightPair& pair) const { return sight(pair, {}); }
-
 SightResult Terrain::sight(const SightPair& pair, const SightRequest& request, AnswerBy by) const {
   SightSolver solver = sight_lines(request, 0, by);
   SightResult result = solver.solve(pair);
   result.cost.add_counts(solver.base_cost());
   return result;
-}
-
-SightSolver Terrain::sight_lines(const SightRequest& request) const {
-  return sight_lines(request, SightSolver::kCoarseRecords);
 }
 
 SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records,
@@ -104,8 +86,6 @@ std::vector<VolumeResult> Terrain::volumes(const VolumeRequest& request,
 StreamSummary Terrain::stream(const StreamRequest& request, const ByteSink& sink) const {
   return write_stream(*this, request, sink);
 }
-
-HierarchyReport Terrain::check_hierarchy() const { return check_hierarchy({}); }
 
 HierarchyReport Terrain::check_hierarchy(const HierarchyRequest& request) const {
   return ptin::check_hierarchy(*this, request);

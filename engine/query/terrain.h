@@ -28,7 +28,7 @@
 // is certified for and what it cost.
 //
 // This header declares requests and results alone. Who asks a question includes its header too, and
-// who asks many questions.h.
+// who asks many questions.h. An empty request, {}, is about the full TIN.
 #pragma once
 
 #include <cstddef>
@@ -115,19 +115,14 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] TinParts parts(PartRequest request) const;
   /// A mesh that begins as T0 and follows predicates. The window shares the file and may outlive
   /// the terrain.
-  [[nodiscard]] MovingWindow moving_window() const;
   [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options) const;
 
   /// Heights at points in map units: surface, void and outside told apart.
-  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points) const;
-  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points,
-                                    const LocateRequest& request,
+  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points, const LocateRequest& request,
                                     AnswerBy by = AnswerBy::kStars) const;
   /// Heights along a polyline, with a break at every edge of the TIN.
-  [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line) const;
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
                                       const ProfileRequest& request) const;
-  [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines) const;
   [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
                                       const ProfileRequest& request) const;
   /// Heights at the centres of pixels, block by block, or in the caller's memory.
@@ -136,19 +131,15 @@ class Terrain : public OpenedTerrain {
   RasterResult raster(const RasterRequest& request, std::span<double> heights,
                       std::span<PointState> states = {}) const;
   /// The highest or lowest point of the terrain or of a window.
-  [[nodiscard]] HighestResult highest() const;
   [[nodiscard]] HighestResult highest(const HighestRequest& request) const;
   /// Samples that a level of detail moves from surface to void, or back.
   [[nodiscard]] ClassChanges class_changes(const ClassChangesRequest& request) const;
 
   /// Whether the ends of a line see each other.
-  [[nodiscard]] SightResult sight(const SightPair& pair) const;
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request,
                                   AnswerBy by = AnswerBy::kStars) const;
   /// Sight lines of many pairs.
-  /// @param coarse_records  As for the constructor of SightSolver, and SightSolver::kCoarseRecords;
-  ///                        by splits there is no coarse level.
-  [[nodiscard]] SightSolver sight_lines(const SightRequest& request) const;
+  /// @param coarse_records  As for the constructor of SightSolver; by splits there is no coarse level.
   [[nodiscard]] SightSolver sight_lines(const SightRequest& request, std::uint64_t coarse_records,
                                         AnswerBy by = AnswerBy::kStars) const;
   /// What one observer sees.
@@ -171,7 +162,6 @@ class Terrain : public OpenedTerrain {
 
   /// Whether the records are closed and saturated, which every question stands on: what verify
   /// looks at beside verify_store().
-  [[nodiscard]] HierarchyReport check_hierarchy() const;
   [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request) const;
 
  private:

@@ -333,7 +333,7 @@ TEST(Raster, TakesCentresWithinTheMarginOntoTheBorder) {
   const auto corner = static_cast<std::size_t>(2 * request.pixels.width + 2);
   EXPECT_EQ(without.states[corner], PointState::kOutside);
   const MapPoint at = f.map.to_map(f.bounds.min_x, f.bounds.max_y);
-  EXPECT_EQ(with.heights[corner], terrain.locate({&at, 1}).points[0].height);
+  EXPECT_EQ(with.heights[corner], terrain.locate({&at, 1}, {}).points[0].height);
 }
 
 TEST(Raster, RefusesWhatMeansNothing) {
