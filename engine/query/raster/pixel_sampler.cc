@@ -5,22 +5,18 @@
 #include <array>
 #include <limits>
 
+#include "engine/geometry/orient.h"
 #include "engine/query/living/spot_in_triangle.h"
 
 namespace ptin {
 
 namespace {
 
-/// Twice the area of a triangle in square grid units.
-std::int64_t double_area(const LivingTriangle& t) {
-  const GridPoint a = t.corner[0].position, b = t.corner[1].position, c = t.corner[2].position;
-  return (std::int64_t{b.x} - a.x) * (std::int64_t{c.y} - a.y) -
-         (std::int64_t{b.y} - a.y) * (std::int64_t{c.x} - a.x);
-}
-
 /// Whether a triangle holds no other position of the grid than its corners: when it is half a
 /// square unit, by Pick's theorem.
-bool is_smallest(const LivingTriangle& t) { return double_area(t) == 1; }
+bool is_smallest(const LivingTriangle& t) {
+  return orient(t.corner[0].position, t.corner[1].position, t.corner[2].position) == 1;
+}
 
 /// The weights of the corners at a spot of the triangle's box, where 64 bits hold them: sides of
 /// 2^18 grid units make products of 2^58.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,19 +16,6 @@ namespace {
 /// A window that is asked for more vertices than the level that was counted has is counted again
 /// down to a level of so many times as many records.
 constexpr double kMoreRecords = 8;
-
-class MeetsWindow final : public AttributePredicate {
- public:
-  MeetsWindow(const GridBox& box, double error) : box_(box), above_(error) {}
-  [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    return above_.holds(a) && box_.holds(a);
-  }
-  [[nodiscard]] GridBox reach() const noexcept override { return box_.reach(); }
-
- private:
-  MeetsBox box_;
-  AboveError above_;
-};
 
 /// The part of the side from `low` to `high` that lies between `from` and `to`, as a share of it.
 double share_of_side(double low, double high, double from, double to) {
@@ -75,7 +63,9 @@ class WindowCounts {
   std::vector<double> above(double error, IoCounters& io) const {
     std::vector<double> counts(bins_.size(), 0.0);
     std::vector<PageId> pages;
-    store_.index().search(MeetsWindow(box_around(window_), error), pages, io);
+    const PredicatePtr wanted = all_of(
+        {std::make_shared<MeetsBox>(box_around(window_)), std::make_shared<AboveError>(error)});
+    store_.index().search(*wanted, pages, io);
     for (const PageId id : pages) {
       const StoreFile::PageInfo page = store_.page_info(id);
       const std::size_t first = bin_of(page.min_error);
