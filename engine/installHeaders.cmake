@@ -80,7 +80,6 @@ set(public_headers
     engine/query/isoline/isoline_progressive.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
-    engine/query/living/grid_cell.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
     engine/query/received/received_mesh.h
@@ -100,6 +99,8 @@ set(public_headers
     engine/query/select/region.h
     engine/query/select/retrieval.h
     engine/query/select/total_order.h
+    engine/query/shape/grid_cell.h
+    engine/query/shape/spot.h
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 

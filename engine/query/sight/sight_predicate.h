@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/attributes.h"
 
 namespace ptin {

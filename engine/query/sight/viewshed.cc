@@ -14,7 +14,7 @@
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/sight/viewshed_sweep.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 

@@ -5,7 +5,7 @@
 
 #include "engine/mesh/tin.h"
 #include "engine/query/sight/viewshed.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/store_file.h"
 
 namespace ptin {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/living/grid_cell.h"
+#include "engine/query/shape/grid_cell.h"
 
 #include <algorithm>
 #include <array>
