@@ -44,6 +44,10 @@ class TinParts {
   /// @throws Error corruption, io_error, cancelled
   /// Cost: as LivingTin::gather().
   [[nodiscard]] Tin* part(const GridBox& box);
+  /// The part of a box that a cell needs. Null where the cell is to be cut into four.
+  /// @throws Error resource_exhausted  the cell is a single position and its part does not fit
+  ///               as part()
+  [[nodiscard]] Tin* part_for(const GridCell& cell, const GridBox& box);
 
   /// Hands the same triangles to `visit`, in constant memory but for LivingReader::read().
   void visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit);

@@ -2,67 +2,30 @@
 #include "engine/query/shape/grid_cell.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
+#include <cmath>
 
 #include "engine/geometry/hilbert.h"
+#include "engine/query/shape/tiler.h"
 
 namespace ptin {
 
 namespace {
 
-/// The walk over the quadtree of cells.
-class CellWalk {
- public:
-  CellWalk(const GridBox& domain, const CellFits& fits, const VisitCell& visit)
-      : domain_(domain), fits_(fits), visit_(visit), area_(area_in(domain)) {}
+GridCell smallest_cell_around(const GridBox& domain) {
+  const auto differing = static_cast<std::uint32_t>(domain.min_x ^ domain.max_x) |
+                         static_cast<std::uint32_t>(domain.min_y ^ domain.max_y);
+  const int level = std::bit_width(differing);
+  return {static_cast<std::uint32_t>(domain.min_x) >> level << level,
+          static_cast<std::uint32_t>(domain.min_y) >> level << level, level};
+}
 
-  void run() {
-    const auto differing = static_cast<std::uint32_t>(domain_.min_x ^ domain_.max_x) |
-                           static_cast<std::uint32_t>(domain_.min_y ^ domain_.max_y);
-    const int level = std::bit_width(differing);
-    const auto x = static_cast<std::uint32_t>(domain_.min_x) >> level << level;
-    const auto y = static_cast<std::uint32_t>(domain_.min_y) >> level << level;
-    go_through({x, y, level}, 1.0);
-  }
-
- private:
-  void go_through(const GridCell& cell, double share) {
-    const GridBox box = cell.box();
-    if (!meets(box, domain_)) return;
-    if (cell.level > 0 && !fits_(cell, share)) {
-      for (const GridCell& child : children(cell)) go_through(child, share / 4);
-      return;
-    }
-    done_ += area_in(box);
-    visit_(cell, area_ > 0 ? std::min(1.0, done_ / area_) : 1.0);
-  }
-
-  [[nodiscard]] double area_in(const GridBox& box) const {
-    const double width = std::min(box.max_x, domain_.max_x) - std::max(box.min_x, domain_.min_x);
-    const double height = std::min(box.max_y, domain_.max_y) - std::max(box.min_y, domain_.min_y);
-    return (width + 1.0) * (height + 1.0);
-  }
-
-  static std::array<GridCell, 4> children(const GridCell& cell) {
-    const int level = cell.level - 1;
-    const std::uint32_t side = 1U << level;
-    std::array<GridCell, 4> cells = {{{cell.x, cell.y, level},
-                                      {cell.x + side, cell.y, level},
-                                      {cell.x, cell.y + side, level},
-                                      {cell.x + side, cell.y + side, level}}};
-    std::sort(cells.begin(), cells.end(), [](const GridCell& a, const GridCell& b) {
-      return hilbert_position(a.x, a.y) < hilbert_position(b.x, b.y);
-    });
-    return cells;
-  }
-
-  GridBox domain_;
-  const CellFits& fits_;
-  const VisitCell& visit_;
-  double area_ = 0.0;
-  double done_ = 0.0;
-};
+/// Positions that the boxes share. REQUIRES: they meet.
+double shared_area(const GridBox& a, const GridBox& b) {
+  const double width = std::min(a.max_x, b.max_x) - std::max(a.min_x, b.min_x);
+  const double height = std::min(a.max_y, b.max_y) - std::max(a.min_y, b.min_y);
+  return (width + 1.0) * (height + 1.0);
+}
 
 }  // namespace
 
@@ -74,8 +37,32 @@ GridBox GridCell::box() const noexcept {
   return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), last(x), last(y)};
 }
 
-void walk_fitting_cells(const GridBox& domain, const CellFits& fits, const VisitCell& visit) {
-  CellWalk(domain, fits, visit).run();
+std::array<GridCell, 4> divided(const GridCell& cell) {
+  const int level = cell.level - 1;
+  const std::uint32_t side = 1U << level;
+  std::array<GridCell, 4> cells = {{{cell.x, cell.y, level},
+                                    {cell.x + side, cell.y, level},
+                                    {cell.x, cell.y + side, level},
+                                    {cell.x + side, cell.y + side, level}}};
+  std::sort(cells.begin(), cells.end(), [](const GridCell& a, const GridCell& b) {
+    return hilbert_position(a.x, a.y) < hilbert_position(b.x, b.y);
+  });
+  return cells;
+}
+
+void work_on_cells(const GridBox& domain, const WorkOnCell& work) {
+  const GridCell whole = smallest_cell_around(domain);
+  const double area = shared_area(domain, domain);
+  double done = 0.0;
+  work_in_parts(whole, [&](const GridCell& cell) {
+    const GridBox box = cell.box();
+    if (!meets(box, domain)) return true;
+    const double share = std::ldexp(1.0, 2 * (cell.level - whole.level));
+    const double done_then = done + shared_area(box, domain);
+    if (!work(cell, share, area > 0 ? std::min(1.0, done_then / area) : 1.0)) return false;
+    done = done_then;
+    return true;
+  });
 }
 
 }  // namespace ptin

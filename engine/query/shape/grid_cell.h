@@ -3,6 +3,7 @@
 // The cells in which a terrain of any size is walked: squares of the grid, along the Hilbert curve.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -25,18 +26,19 @@ struct GridCell {
   }
 };
 
-/// What walk_fitting_cells() asks of a cell of more than one position: whether to visit it whole.
-/// @param share  The part of the first cell's area that it has: a quarter for each time it was
-///               halved.
-using CellFits = std::function<bool(const GridCell& cell, double share)>;
-/// @param done  The share of the domain's area that is done after this cell.
-using VisitCell = std::function<void(const GridCell& cell, double done)>;
+/// The quarters of a cell, in the order of the Hilbert curve (hilbert_position()). REQUIRES: more
+/// than one position.
+[[nodiscard]] std::array<GridCell, 4> divided(const GridCell& cell);
 
-/// Begins with the smallest cell that holds `domain`, cuts a cell that does not fit into four, and
-/// visits those that do and meet the domain, in the order of the Hilbert curve
-/// (hilbert_position()). A cell of a single position is visited without being asked. Every position
-/// of the domain lies in exactly one cell.
-/// @throws what `fits` and `visit` throw
-void walk_fitting_cells(const GridBox& domain, const CellFits& fits, const VisitCell& visit);
+/// Works on one cell. False: it does not fit, and is cut into four.
+/// @param share  The part of the first cell's area that it has: a quarter for each time it was cut.
+/// @param done   The share of the domain's area that is done after this cell.
+using WorkOnCell = std::function<bool(const GridCell& cell, double share, double done)>;
+
+/// Works on a domain cell by cell, beginning with the smallest cell that holds it, in the order of
+/// the Hilbert curve. Every position of the domain lies in exactly one cell that is done.
+/// REQUIRES: of a single position `work` returns true, or throws.
+/// @throws what `work` throws
+void work_on_cells(const GridBox& domain, const WorkOnCell& work);
 
 }  // namespace ptin
