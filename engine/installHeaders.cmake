@@ -99,6 +99,8 @@ set(public_headers
     engine/query/select/region.h
     engine/query/select/retrieval.h
     engine/query/select/total_order.h
+    engine/query/shape/bins_along_y.h
+    engine/query/shape/clip.h
     engine/query/shape/grid_cell.h
     engine/query/shape/spot.h
     engine/query/sight/curvature.h

@@ -55,7 +55,6 @@
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/query_limits.h"
-#include "engine/query/shape/spot.h"
 #include "engine/query/sight/sight.h"
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_reader.h"

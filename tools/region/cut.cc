@@ -2,7 +2,10 @@
 #include "tools/region/cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "tools/region/cut_mesh.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/mesh/tin.h"
-#include "engine/query/terrain.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin::tools {
 

@@ -220,9 +220,9 @@ class HighestSearch final : private BestStarVisitor {
 
   [[nodiscard]] bool region_meets_domain() const {
     const Tin& t0 = terrain_.t0();
-    if (!border_) return meets_domain(window_, t0, facts_.bounds);
     return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
-      return region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
+      return !region_ ||
+             region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
     });
   }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin {
 
 namespace {
@@ -18,10 +20,6 @@ std::vector<std::vector<MapPoint>> rings_on_grid(const Polygon& polygon, const A
 }
 
 MapPoint position_of(const ClippedCorner& c) { return {c[0], c[1]}; }
-
-double cross(MapPoint o, MapPoint d, MapPoint p) {
-  return (d.x - o.x) * (p.y - o.y) - (d.y - o.y) * (p.x - o.x);
-}
 
 /// A place of the triangle with its value.
 ClippedCorner valued(const std::array<ClippedCorner, 3>& triangle, MapPoint p) {

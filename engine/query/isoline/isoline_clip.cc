@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin {
 
 namespace {
@@ -48,20 +50,6 @@ class JoinedParts {
 
 bool is_inside(MapPoint p, const Window& w) noexcept {
   return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
-}
-
-/// Where a segment meets the line x == at, or y == at when coordinates are exchanged.
-double meet(double au, double av, double bu, double bv, double at) noexcept {
-  if (au == at) {
-    return av;
-  }
-  if (bu == at) {
-    return bv;
-  }
-  if (std::tie(bu, bv) < std::tie(au, av)) {
-    std::swap(au, bu), std::swap(av, bv);
-  }
-  return av + (at - au) / (bu - au) * (bv - av);
 }
 
 /// The first point of a -> b in the window. A point outside lies beyond one or two sides of the
@@ -156,9 +144,6 @@ class PolygonClip::OfSegment {
 
   [[nodiscard]] double along(MapPoint p) const {
     return (p.x - a_.x) * (b_.x - a_.x) + (p.y - a_.y) * (b_.y - a_.y);
-  }
-  [[nodiscard]] static double cross(MapPoint o, MapPoint d, MapPoint p) {
-    return (d.x - o.x) * (p.y - o.y) - (d.y - o.y) * (p.x - o.x);
   }
   /// On which side of the line from o to d a place lies: 0 within the slack of it.
   [[nodiscard]] int side_of(MapPoint o, MapPoint d, MapPoint p) const {

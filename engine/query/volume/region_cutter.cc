@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/affine_rounding.h"
+#include "engine/query/shape/clip.h"
 #include "engine/query/volume/grid_box.h"
 
 namespace ptin {
@@ -20,10 +21,6 @@ constexpr int kMostHalvings = 40;
 constexpr int kMostInVain = 8;
 /// Edges and pairs of edges that are looked at for one piece.
 constexpr std::uint64_t kMostLooks = std::uint64_t{1} << 26;
-
-double cross(MapPoint o, MapPoint a, MapPoint b) {
-  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
 
 void look(std::uint64_t& looks, std::uint64_t more) {
   looks += more;
@@ -51,7 +48,10 @@ RegionCutter::RegionCutter(const Region& region, const AffineMap& map) : region_
                 "a volume is asked of a window or a polygon; a point has no inside");
   }
   cancel_pairs();
-  sort_into_bins();
+  std::vector<Interval> reaches;
+  reaches.reserve(edges_.size());
+  for (const Edge& e : edges_) reaches.push_back({e.low.y, e.high.y});
+  bins_ = BinsAlongY(reaches);
 }
 
 /// Two edges between the same ends bound nothing, by the even-odd rule.
@@ -86,52 +86,9 @@ void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map
   }
 }
 
-void RegionCutter::sort_into_bins() {
-  if (edges_.empty()) return;
-  double high = edges_.front().high.y;
-  low_ = edges_.front().low.y;
-  for (const Edge& e : edges_) {
-    low_ = std::min(low_, e.low.y);
-    high = std::max(high, e.high.y);
-  }
-  // So many that an edge is in six bins on average at most.
-  double heights = 0.0;
-  for (const Edge& e : edges_) heights += e.high.y - e.low.y;
-  const auto count = static_cast<double>(edges_.size());
-  const double most = heights > 0 ? 4.0 * count * ((high - low_) / heights) : 1.0;
-  const auto bins = static_cast<std::size_t>(std::clamp(std::min(most, count), 1.0, 0x1p16));
-  bins_per_unit_ = high > low_ ? static_cast<double>(bins) / (high - low_) : 0.0;
-  bin_begin_.assign(bins + 1, 0);
-  for (Edge& e : edges_) {
-    e.first_bin = bin_of(e.low.y);
-    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) ++bin_begin_[b + 1];
-  }
-  for (std::size_t b = 0; b < bins; ++b) bin_begin_[b + 1] += bin_begin_[b];
-  in_bin_.resize(bin_begin_.back());
-  std::vector<std::uint32_t> next(bin_begin_.begin(), bin_begin_.end() - 1);
-  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    const Edge& e = edges_[i];
-    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) in_bin_[next[b]++] = i;
-  }
-}
-
-std::size_t RegionCutter::bin_of(double y) const {
-  const double bin = (y - low_) * bins_per_unit_;
-  const auto last = static_cast<double>(bin_begin_.size() - 2);
-  return static_cast<std::size_t>(std::clamp(bin, 0.0, last));
-}
-
 RegionCutter::Edges RegionCutter::edges_along(const Extent& extent) const {
   Edges along;
-  if (edges_.empty()) return along;
-  const std::size_t first = bin_of(extent.min_y), last = bin_of(extent.max_y);
-  for (std::size_t b = first; b <= last; ++b) {
-    for (std::uint32_t i = bin_begin_[b]; i < bin_begin_[b + 1]; ++i) {
-      const Edge& e = edges_[in_bin_[i]];
-      const bool is_seen = std::max(e.first_bin, first) != b;
-      if (!is_seen) along.push_back(&e);
-    }
-  }
+  bins_.visit(extent.min_y, extent.max_y, [&](std::uint32_t i) { along.push_back(&edges_[i]); });
   return along;
 }
 
