@@ -117,9 +117,8 @@ void insert_ring(CutMesh& mesh, const Ring& ring, const GridBox& bounds) {
   }
 }
 
-/// The sides of rings, on the grid. Doubles are exact enough: what is asked of them lies in the middle
-/// of a triangle.
-PolygonSides sides_of(const std::vector<Ring>& rings) {
+/// Doubles are exact enough for the sides: what is asked of them lies in the middle of a triangle.
+PolygonSides sides_on_grid(const std::vector<Ring>& rings) {
   std::vector<std::vector<MapPoint>> corners(rings.size());
   for (std::size_t i = 0; i < rings.size(); ++i) {
     for (const BorderCorner& c : rings[i]) corners[i].push_back(grid_of(c.at));
@@ -172,7 +171,7 @@ Mesh cut_to_region(const RefinedTin& refined, const StoreFacts& facts, const Reg
   Mesh mesh;
   if (cut.triangles.empty()) return mesh;
   for (const Ring& ring : rings) insert_ring(cut, ring, facts.bounds);
-  const std::vector<bool> inside = inside_of(cut, sides_of(rings));
+  const std::vector<bool> inside = inside_of(cut, sides_on_grid(rings));
   std::vector<std::uint32_t> place(cut.nodes.size(), kNone);
   for (TriangleId t = 0; t < cut.triangles.size(); ++t) {
     if (!inside[t] || cut.triangles[t].cls == TriangleClass::kVoid) continue;

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin {
 
 PolygonSides::PolygonSides(std::span<const std::vector<MapPoint>> rings) {
@@ -35,9 +37,7 @@ bool PolygonSides::surround(MapPoint p) const {
     if ((s.low.y <= p.y) == (s.high.y <= p.y)) continue;
     // The side crosses the line to the right of the place where it has the place on its left, going
     // up.
-    const double left =
-        (s.high.x - s.low.x) * (p.y - s.low.y) - (p.x - s.low.x) * (s.high.y - s.low.y);
-    if ((left > 0) == (s.high.y > s.low.y)) is_odd = !is_odd;
+    if ((cross(s.low, s.high, p) > 0) == (s.high.y > s.low.y)) is_odd = !is_odd;
   }
   return is_odd;
 }

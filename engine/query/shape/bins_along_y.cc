@@ -26,8 +26,9 @@ BinsAlongY::BinsAlongY(std::span<const Interval> reaches) : first_bin_(reaches.s
   const double most = heights > 0 ? kBinsOfAThing * count * (whole / heights) : 1.0;
   const double bins = std::floor(std::clamp(most, 1.0, count));
   low_ = all.lo;
-  // Of a height so small that this is no number one bin holds everything.
-  bins_per_unit_ = std::isfinite(bins / whole) ? bins / whole : 0.0;
+  // Where all lie at one y, or so close to it that this is no number, one bin holds everything.
+  const double per_unit = whole > 0 ? bins / whole : 0.0;
+  bins_per_unit_ = std::isfinite(per_unit) ? per_unit : 0.0;
   begin_.assign(static_cast<std::size_t>(bins) + 1, 0);
   const auto visit_bins = [&](const auto& visit) {
     for (std::uint32_t i = 0; i < reaches.size(); ++i) {

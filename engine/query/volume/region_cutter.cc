@@ -86,15 +86,15 @@ void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map
   }
 }
 
-RegionCutter::Edges RegionCutter::edges_along(const Extent& extent) const {
+RegionCutter::Edges RegionCutter::edges_along(const GridWindow& extent) const {
   Edges along;
   bins_.visit(extent.min_y, extent.max_y, [&](std::uint32_t i) { along.push_back(&edges_[i]); });
   return along;
 }
 
-RegionCutter::Extent RegionCutter::extent_of(const ConvexPiece& piece) {
+GridWindow RegionCutter::extent_of(const ConvexPiece& piece) {
   const MapPoint p = piece.corners().front();
-  Extent extent{p.x, p.y, p.x, p.y};
+  GridWindow extent{p.x, p.y, p.x, p.y};
   for (const MapPoint q : piece.corners()) {
     extent = {std::min(extent.min_x, q.x), std::min(extent.min_y, q.y), std::max(extent.max_x, q.x),
               std::max(extent.max_y, q.y)};
@@ -104,7 +104,7 @@ RegionCutter::Extent RegionCutter::extent_of(const ConvexPiece& piece) {
 
 void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts) const {
   if (piece.is_empty()) return;
-  const Extent e = extent_of(piece);
+  const GridWindow e = extent_of(piece);
   const GridBox box = box_between({e.min_x, e.min_y}, {e.max_x, e.max_y});
   if (!region_.meets(box)) return;
   if (region_.contains(box)) {
@@ -120,7 +120,7 @@ void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts
 void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                              std::vector<ConvexPiece>& parts) {
   if (piece.is_empty()) return;
-  const Extent e = extent_of(piece);
+  const GridWindow e = extent_of(piece);
   look(*done.looks, along.size());
   Edges local, left;
   for (const Edge* edge : along) {
@@ -154,7 +154,7 @@ void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, Halvi
 
 /// Where slabs of a piece begin and end, ascending: between them no edge begins, ends or crosses
 /// another.
-std::vector<double> RegionCutter::slab_ends(const Extent& extent, const Edges& local) {
+std::vector<double> RegionCutter::slab_ends(const GridWindow& extent, const Edges& local) {
   std::vector<double> ends = {extent.min_y, extent.max_y};
   const auto add = [&](double y) {
     if (y > extent.min_y && y < extent.max_y) ends.push_back(y);
@@ -182,7 +182,7 @@ void RegionCutter::cut_in_slab(const ConvexPiece& piece, double low, double high
   if (!(low < middle && middle < high)) return;
   const auto spans = [&](const Edge* e) { return e->low.y <= middle && middle < e->high.y; };
   bool inside = std::count_if(left.begin(), left.end(), spans) % 2 != 0;
-  const Extent extent = extent_of(piece);
+  const GridWindow extent = extent_of(piece);
   double side = extent.min_x;
   std::vector<std::pair<double, const Edge*>> across;
   for (const Edge* e : local) {

@@ -45,9 +45,6 @@ class RegionCutter {
       return low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x);
     }
   };
-  struct Extent {
-    double min_x, min_y, max_x, max_y;
-  };
   using Edges = std::vector<const Edge*>;
 
   /// How often a piece was halved, how often of late in vain, and the edges in it before the last.
@@ -57,13 +54,13 @@ class RegionCutter {
     std::uint64_t* looks = nullptr;  ///< What has been looked at for the whole piece.
   };
 
-  static Extent extent_of(const ConvexPiece& piece);
+  static GridWindow extent_of(const ConvexPiece& piece);
   void add_ring(std::span<const MapPoint> ring, const AffineMap& map);
   void cancel_pairs();
-  [[nodiscard]] Edges edges_along(const Extent& extent) const;
+  [[nodiscard]] Edges edges_along(const GridWindow& extent) const;
   static void cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                         std::vector<ConvexPiece>& parts);
-  static std::vector<double> slab_ends(const Extent& extent, const Edges& local);
+  static std::vector<double> slab_ends(const GridWindow& extent, const Edges& local);
   static void cut_in_slab(const ConvexPiece& piece, double low, double high, const Edges& local,
                           const Edges& left, std::vector<ConvexPiece>& parts);
 
