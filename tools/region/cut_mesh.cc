@@ -135,6 +135,7 @@ void CutMesh::split_triangle(TriangleId t, std::uint32_t node) {
 }
 
 bool CutMesh::can_split_edge(TriangleId t, int i, Spot p) const noexcept {
+  // Rounding moves the place off the edge: all four triangles must stay counter-clockwise, strictly.
   const auto fits = [&](TriangleId id, int apex) {
     const auto& v = triangles[id].v;
     return side(at(v[apex]), at(v[next_corner(apex)]), p) > 0 &&
@@ -283,11 +284,16 @@ CutNode CutMesh::crossing(std::uint32_t a, std::uint32_t b, Spot v, Spot target,
     high = cut.edge_high;
     is_tin_edge = true;
   }
+  // One order of the ends, whichever of the two triangles the way comes from: both get the same bits.
   if (comes_first(at(high), at(low))) std::swap(low, high);
   if (is_tin_edge) {
     node.edge_low = low;
     node.edge_high = high;
   }
+  // Along an axis the share is that of the side's own coordinate: it depends on the edge and the side
+  // alone, so windows that share a side agree on it, wherever their corners are. A slanted side goes
+  // on from the node before, which was rounded: so the chain never turns back, and two polygons that
+  // share a slanted side agree to a spot, not to the bit.
   const bool vertical = from.at.x == to.at.x;
   const bool horizontal = from.at.y == to.at.y;
   double share = 0.0;
