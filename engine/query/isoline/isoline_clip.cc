@@ -52,29 +52,24 @@ bool is_inside(MapPoint p, const Window& w) noexcept {
   return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
 }
 
+/// Whether a coordinate that goes from `a` to `b` comes in over a side of the window.
+bool comes_in(double a, double b, double side, bool is_low_side) noexcept {
+  return is_low_side ? a < side && side <= b : b <= side && side < a;
+}
+
 /// The first point of a -> b in the window. A point outside lies beyond one or two sides of the
 /// window, and where the segment comes in it crosses one of these sides.
 std::optional<MapPoint> entry(MapPoint a, MapPoint b, const Window& w) noexcept {
-  if (is_inside(a, w)) {
-    return a;
-  }
+  if (is_inside(a, w)) return a;
   for (const double side : {w.min_x, w.max_x}) {
-    const bool crosses = side == w.min_x ? a.x < side && side <= b.x : b.x <= side && side < a.x;
-    if (crosses) {
-      const MapPoint p{side, meet(a.x, a.y, b.x, b.y, side)};
-      if (is_inside(p, w)) {
-        return p;
-      }
-    }
+    if (!comes_in(a.x, b.x, side, side == w.min_x)) continue;
+    const MapPoint p{side, meet(a.x, a.y, b.x, b.y, side)};
+    if (is_inside(p, w)) return p;
   }
   for (const double side : {w.min_y, w.max_y}) {
-    const bool crosses = side == w.min_y ? a.y < side && side <= b.y : b.y <= side && side < a.y;
-    if (crosses) {
-      const MapPoint p{meet(a.y, a.x, b.y, b.x, side), side};
-      if (is_inside(p, w)) {
-        return p;
-      }
-    }
+    if (!comes_in(a.y, b.y, side, side == w.min_y)) continue;
+    const MapPoint p{meet(a.y, a.x, b.y, b.x, side), side};
+    if (is_inside(p, w)) return p;
   }
   return std::nullopt;
 }

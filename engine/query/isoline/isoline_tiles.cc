@@ -79,7 +79,7 @@ class Worker final : private LivingVisitor {
   }
 
   /// Traces the triangles of a tile, unless it does not fit.
-  [[nodiscard]] bool trace(const GridTile& tile) {
+  [[nodiscard]] bool work(const GridTile& tile) {
     context_.check_stop();
     place_.box = tile.box;
     is_smallest_ = tile.is_smallest;
@@ -150,15 +150,11 @@ class Worker final : private LivingVisitor {
 TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                        PointStore& points, QueryCost& cost) {
   Collected collected(points, request.piece_bytes, terrain.store().path());
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int i = 0; i < request.tiles.workers(); ++i) {
-    workers.push_back(
-        std::make_unique<Worker>(terrain, request, request.tiles.worker_bytes(), collected));
-  }
-  work_on_tiles(terrain.store().facts().bounds, request.tiles, [&](int i, const GridTile& tile) {
-    return workers[static_cast<std::size_t>(i)]->trace(tile);
-  });
-  for (const auto& worker : workers) {
+  const auto make = [&](std::uint64_t bytes) {
+    return std::make_unique<Worker>(terrain, request, bytes, collected);
+  };
+  for (const auto& worker :
+       workers_on_tiles(terrain.store().facts().bounds, request.tiles, make)) {
     cost.add_counts(worker->cost());
   }
   return collected.release();

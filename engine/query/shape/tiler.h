@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "engine/geometry/box.h"
 
@@ -62,5 +64,20 @@ using WorkOnTile = std::function<bool(int worker, const GridTile& tile)>;
 /// REQUIRES: `work` throws where a smallest tile does not fit.
 /// @throws what `work` threw first; the tiles that waited then are left
 void work_on_tiles(const GridBox& domain, const TileLimits& limits, const WorkOnTile& work);
+
+/// The same by workers with memory of their own, which serves tile after tile.
+/// @param make  make(bytes) returns a std::unique_ptr to a worker that may hold so many bytes, whose
+///              work(tile) is as WorkOnTile.
+/// @returns the workers, once all tiles are done
+template <class Make>
+[[nodiscard]] auto workers_on_tiles(const GridBox& domain, const TileLimits& limits,
+                                    const Make& make) {
+  std::vector<decltype(make(std::uint64_t{}))> workers;
+  for (int i = 0; i < limits.workers(); ++i) workers.push_back(make(limits.worker_bytes()));
+  work_on_tiles(domain, limits, [&](int worker, const GridTile& tile) {
+    return workers[static_cast<std::size_t>(worker)]->work(tile);
+  });
+  return workers;
+}
 
 }  // namespace ptin

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -33,10 +32,16 @@ struct Walk {
 class TileWorker {
  public:
   virtual ~TileWorker() = default;
-  /// Counts a tile. False when that takes more than `most_bytes`: nothing of it is counted then.
-  virtual bool count(const GridBox& tile, std::uint64_t most_bytes) = 0;
-  /// What the last tile that did not fit would have taken, as far as it came.
-  [[nodiscard]] virtual std::uint64_t bytes_wanted() const = 0;
+  [[nodiscard]] bool work(const GridTile& tile) {
+    context.check_stop();
+    const bool fits = count(tile.box, tile.most_bytes);
+    if (fits) {
+      ++totals.tiles;
+    } else if (tile.is_smallest) {
+      context.admit(std::max(bytes_wanted(), tile.most_bytes + 1));
+    }
+    return fits;
+  }
 
   VolumeTotals totals;
   QueryContext context;
@@ -46,32 +51,23 @@ class TileWorker {
       : totals(walk.empty), context({limit, walk.request.limits.stop}, terrain.store().path()) {}
   TileWorker(const TileWorker&) = delete;
   TileWorker& operator=(const TileWorker&) = delete;
-};
 
-using MakeWorker = std::function<std::unique_ptr<TileWorker>(std::uint64_t limit)>;
+ private:
+  /// Counts a tile. False when that takes more than `most_bytes`: nothing of it is counted then.
+  virtual bool count(const GridBox& tile, std::uint64_t most_bytes) = 0;
+  /// What the last tile that did not fit would have taken, as far as it came.
+  [[nodiscard]] virtual std::uint64_t bytes_wanted() const = 0;
+};
 
 TileLimits tile_limits(const VolumeRequest& request) {
   return {request.limits.memory_bytes, request.tile_bytes, request.threads};
 }
 
-VolumeTotals walk_tiles(const Walk& walk, const MakeWorker& make) {
+template <class Make>
+VolumeTotals walk_tiles(const Walk& walk, const Make& make) {
   VolumeTotals totals = walk.empty;
   if (is_empty(walk.domain)) return totals;
-  const TileLimits limits = tile_limits(walk.request);
-  std::vector<std::unique_ptr<TileWorker>> workers;
-  for (int i = 0; i < limits.workers(); ++i) workers.push_back(make(limits.worker_bytes()));
-  work_on_tiles(walk.domain, limits, [&](int i, const GridTile& tile) {
-    TileWorker& worker = *workers[static_cast<std::size_t>(i)];
-    worker.context.check_stop();
-    const bool fits = worker.count(tile.box, tile.most_bytes);
-    if (fits) {
-      ++worker.totals.tiles;
-    } else if (tile.is_smallest) {
-      worker.context.admit(std::max(worker.bytes_wanted(), tile.most_bytes + 1));
-    }
-    return fits;
-  });
-  for (const auto& worker : workers) {
+  for (const auto& worker : workers_on_tiles(walk.domain, tile_limits(walk.request), make)) {
     worker->totals.cost.add_counts(worker->context.cost);
     totals.add(worker->totals);
   }
