@@ -187,6 +187,40 @@ TEST(Highest, OfARectangleIsThatOfItsWindow) {
   }
 }
 
+/// No point of the border lies above both ends of an edge, where rounding of areas may put it.
+TEST(Highest, OfARegionWithSidesAlongRowsOfVerticesIsAVertex) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& facts = terrain.store().facts();
+  std::mt19937_64 random(5);
+  const auto coordinate = [&](std::int32_t low, std::int32_t high) {
+    return low + static_cast<std::int32_t>(random() % (std::uint64_t(high - low) + 1));
+  };
+  for (int i = 0; i < 40; ++i) {
+    const GridBox& b = facts.bounds;
+    const MapPoint p = facts.map.to_map(coordinate(b.min_x, b.max_x), coordinate(b.min_y, b.max_y));
+    const MapPoint q = facts.map.to_map(coordinate(b.min_x, b.max_x), coordinate(b.min_y, b.max_y));
+    HighestRequest request;
+    request.lowest = i % 2 == 0;
+    request.region =
+        Window{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
+    EXPECT_TRUE(highest(terrain, request).at_vertex);
+    if (p.x == q.x || p.y == q.y) continue;
+    request.region = Polygon{{{p, {q.x, p.y}, q, {p.x, q.y}}}};
+    EXPECT_TRUE(highest(terrain, request).at_vertex);
+  }
+}
+
+TEST(Highest, OfAWindowThatIsOnePlaceIsTheHeightThere) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const MapPoint p = terrain.store().facts().map.to_map(20.25, 30.5);
+  HighestRequest request;
+  request.region = Window{p.x, p.y, p.x, p.y};
+  const HighestResult got = highest(terrain, request);
+  ASSERT_EQ(got.state, PointState::kSurface);
+  const MapPoint points[] = {p};
+  EXPECT_NEAR(got.point.height, terrain.locate(points).points[0].height, 1e-9);
+}
+
 TEST(Highest, OfAPlaceWithoutInsideIsRefused) {
   const TemporaryStore store(reference::small_terrain(1));
   const Terrain terrain(store.open());
