@@ -140,8 +140,7 @@ std::vector<bool> inside_of(const CutMesh& mesh, const PolygonSides& sides) {
     Int128 largest_area = -1;
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const CutTriangle& t = mesh.triangles[piece[k]];
-      const Int128 area =
-          side(mesh.nodes[t.v[0]].at, mesh.nodes[t.v[1]].at, mesh.nodes[t.v[2]].at);
+      const Int128 area = side(mesh.nodes[t.v[0]].at, mesh.nodes[t.v[1]].at, mesh.nodes[t.v[2]].at);
       if (area > largest_area) {
         largest_area = area;
         largest = piece[k];

@@ -98,8 +98,8 @@ std::uint32_t CutMesh::insert_point(const BorderCorner& corner) {
   node.has_height = true;
   double total = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const auto weight = static_cast<double>(
-        side(at(corners[next_corner(i)]), at(corners[previous_corner(i)]), p));
+    const auto weight =
+        static_cast<double>(side(at(corners[next_corner(i)]), at(corners[previous_corner(i)]), p));
     node.map[2] += weight == 0.0 ? 0.0 : weight * nodes[corners[i]].map[2];
     node.has_height = node.has_height && (weight == 0.0 || nodes[corners[i]].has_height);
     total += weight;
@@ -298,11 +298,11 @@ CutNode CutMesh::crossing(std::uint32_t a, std::uint32_t b, Spot v, Spot target,
   const bool horizontal = from.at.y == to.at.y;
   double share = 0.0;
   if (vertical) {
-    share = static_cast<double>(from.at.x - at(low).x) /
-            static_cast<double>(at(high).x - at(low).x);
+    share =
+        static_cast<double>(from.at.x - at(low).x) / static_cast<double>(at(high).x - at(low).x);
   } else if (horizontal) {
-    share = static_cast<double>(from.at.y - at(low).y) /
-            static_cast<double>(at(high).y - at(low).y);
+    share =
+        static_cast<double>(from.at.y - at(low).y) / static_cast<double>(at(high).y - at(low).y);
   } else {
     const auto from_low = static_cast<double>(side(v, target, at(low)));
     const auto from_high = static_cast<double>(side(v, target, at(high)));

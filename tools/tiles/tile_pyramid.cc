@@ -167,8 +167,7 @@ std::optional<TileSet> TilePyramid::look_at(int z, const QueryLimits& limits) co
     return std::nullopt;
   TileSet found(all);
   const Globe::Lease path = globe_->path();
-  const std::uint64_t most_triangles =
-      limits.share(1, 2).memory_bytes / LevelMesh::kBytesATriangle;
+  const std::uint64_t most_triangles = limits.share(1, 2).memory_bytes / LevelMesh::kBytesATriangle;
   const TileBox everywhere{INT64_MIN, INT64_MIN, INT64_MAX, INT64_MAX};
   walk_cells(parts, [&](const GridCell&, Tin& part, double) {
     LevelMesh mesh({grid_, z, level(z)}, *path, everywhere, most_triangles);

@@ -13,8 +13,8 @@
 #include "engine/geometry/packed_boxes.h"
 #include "engine/mesh/link.h"
 #include "engine/mesh/triangle_holds.h"
-#include "engine/query/shape/grid_cell.h"
 #include "engine/query/living/tin_parts.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
 

@@ -28,8 +28,7 @@ std::vector<std::vector<MapPoint>> rings_on_grid(const Region& region, const Aff
     const double max_x = near(w.max_x, bounds.min_x, bounds.max_x);
     const double min_y = near(w.min_y, bounds.min_y, bounds.max_y);
     const double max_y = near(w.max_y, bounds.min_y, bounds.max_y);
-    return {std::vector<MapPoint>{
-        {min_x, min_y}, {max_x, min_y}, {max_x, max_y}, {min_x, max_y}}};
+    return {std::vector<MapPoint>{{min_x, min_y}, {max_x, min_y}, {max_x, max_y}, {min_x, max_y}}};
   }
   std::vector<std::vector<MapPoint>> rings = std::get<Polygon>(region).rings;
   for (std::vector<MapPoint>& ring : rings) {

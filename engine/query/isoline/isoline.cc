@@ -89,14 +89,14 @@ class IsolineExtraction {
 
  private:
   void trace() {
-    TileTraceRequest request{levels_,
-                             detail_,
-                             region_ ? &*region_ : nullptr,
-                             {bytes_of_share(request_, kShareOfTiles),
-                              request_.threads <= 1 ? kTileBytesOfOneThread : kTileBytes,
-                              request_.threads},
-                             bytes_of_share(request_, kShareOfPieces),
-                             request_.limits.stop};
+    TileTraceRequest request{
+        levels_,
+        detail_,
+        region_ ? &*region_ : nullptr,
+        {bytes_of_share(request_, kShareOfTiles),
+         request_.threads <= 1 ? kTileBytesOfOneThread : kTileBytes, request_.threads},
+        bytes_of_share(request_, kShareOfPieces),
+        request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
     const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
     TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)

@@ -153,8 +153,7 @@ TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& req
   const auto make = [&](std::uint64_t bytes) {
     return std::make_unique<Worker>(terrain, request, bytes, collected);
   };
-  for (const auto& worker :
-       workers_on_tiles(terrain.store().facts().bounds, request.tiles, make)) {
+  for (const auto& worker : workers_on_tiles(terrain.store().facts().bounds, request.tiles, make)) {
     cost.add_counts(worker->cost());
   }
   return collected.release();

@@ -22,7 +22,7 @@ namespace ptin {
 struct TileTraceRequest {
   const LevelSet& levels;
   const Detail& detail;
-  const GridRegion* region;    ///< Only triangles that meet it are traced; null: all.
+  const GridRegion* region;  ///< Only triangles that meet it are traced; null: all.
   /// Pages on the borders of tiles are read for each of them, so one thread is better off with large
   /// tiles; several share many small ones out.
   TileLimits tiles;

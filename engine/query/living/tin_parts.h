@@ -12,11 +12,11 @@
 #include "engine/geometry/box.h"
 #include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/shape/grid_cell.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
 

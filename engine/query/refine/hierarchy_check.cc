@@ -15,11 +15,11 @@
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/shape/grid_cell.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/shape/grid_cell.h"
 #include "engine/stop.h"
 
 namespace ptin {

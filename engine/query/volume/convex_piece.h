@@ -57,8 +57,7 @@ class ConvexPiece {
       if (n < kMost) kept[n++] = p;
     };
     clip_convex(
-        size_, [&](std::size_t i) { return side[i]; },
-        [&](std::size_t i) { put(corners_[i]); },
+        size_, [&](std::size_t i) { return side[i]; }, [&](std::size_t i) { put(corners_[i]); },
         [&](std::size_t i, std::size_t j) { put(crossing(i, j, side[i], side[j])); });
     corners_ = kept;
     size_ = n < 3 ? 0 : n;

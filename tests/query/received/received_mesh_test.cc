@@ -15,8 +15,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
 #include "engine/query/shape/spot.h"
+#include "engine/query/terrain.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
 
