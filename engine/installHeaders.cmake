@@ -80,6 +80,7 @@ set(public_headers
     engine/query/isoline/isoline_progressive.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
+    engine/query/living/living_stars.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
     engine/query/received/received_mesh.h
@@ -89,7 +90,6 @@ set(public_headers
     engine/query/refine/refine.h
     engine/query/refine/refinement.h
     engine/query/select/accounting.h
-    engine/query/select/answer_by.h
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h
@@ -130,7 +130,6 @@ set(public_headers
     storage/index.h
     storage/index_shape.h
     storage/layout.h
-    storage/living_stars.h
     storage/packed_segment.h
     storage/page_journal.h
     storage/page_store.h

@@ -4,10 +4,8 @@
 // predicate.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "engine/geometry/box.h"
 #include "engine/geometry/interval.h"
@@ -57,18 +55,6 @@ class StarPredicate {
   }
 };
 
-/// Those of ascending steps, ordered heights (storage/page_columns.h), that lie above `low` and not
-/// above `high`: with such heights at its corners a triangle has some below and some at or above each.
-[[nodiscard]] inline std::span<const std::uint64_t> steps_within(
-    std::span<const std::uint64_t> steps, std::uint64_t low, std::uint64_t high) noexcept {
-  const auto first = std::upper_bound(steps.begin(), steps.end(), low);
-  auto last = first;
-  while (last != steps.end() && *last <= high) {
-    ++last;
-  }
-  return {first, last};
-}
-
 /// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
 /// interval. Of the stars of a page all are found that have such a triangle, and some others.
 struct StarFilter {
@@ -77,13 +63,8 @@ struct StarFilter {
   double level = -1.0;             ///< An error; negative: the finest TIN.
   /// Ask for the stars of records of the level's own error too, whatever lives of them.
   bool with_ties = false;
-  /// Ascending ordered heights, borrowed: ask only for stars around a vertex with a height, with
-  /// steps_within() what the corners of their living triangles span. Empty: for all.
-  std::span<const std::uint64_t> steps;
   /// A further condition of pages and subtrees, borrowed; null: none.
   const StarPredicate* also = nullptr;
-  /// Ask `also` of stars too, where it looks at nothing but the box: with the roi of their record.
-  bool also_of_stars = false;
 };
 
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section

@@ -32,16 +32,10 @@ class StarTest {
     const GridBox& box = filter_.box;
     return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x && e.star_min_y <= box.max_y &&
            box.min_y <= e.star_max_y && e.error_max > level_ - (filter_.with_ties ? 1 : 0) &&
-           e.death_min <= level_ + 1 && (filter_.steps.empty() || has_step(e)) &&
-           (asks_no_more_ || passes(star_attributes_of(e, heights_)));
+           e.death_min <= level_ + 1 && (asks_no_more_ || passes(star_attributes_of(e, heights_)));
   }
 
  private:
-  [[nodiscard]] bool has_step(const layout::NodeEntry& e) const {
-    return !steps_within(filter_.steps, ordered_height(e.star_height_lo, heights_.type),
-                         ordered_height(e.star_height_hi, heights_.type))
-                .empty();
-  }
   [[nodiscard]] bool passes(const StarAttributes& a) const {
     return meets(a.heights, filter_.heights) &&
            (filter_.also == nullptr || filter_.also->may_hold(a));

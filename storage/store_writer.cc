@@ -15,7 +15,6 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
-#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/directory_writer.h"
 #include "storage/error_table.h"
@@ -25,6 +24,7 @@
 #include "storage/file/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
+#include "storage/page_columns.h"
 #include "storage/page_slots.h"
 #include "storage/short_float.h"
 #include "storage/store_front.h"

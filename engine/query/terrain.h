@@ -63,6 +63,16 @@
 
 namespace ptin {
 
+/// How points, lines of sight and isolines are found.
+enum class AnswerBy : std::uint8_t {
+  /// From the triangles that live at the level and meet the place (engine/DESIGN.md, section 6.15),
+  /// found by the file's own index.
+  kStars,
+  /// As the paper has it (engine/query/paper): records are retrieved by the index in use, sorted
+  /// topologically and applied to T0. A terrain with another index in use always answers so.
+  kSplits,
+};
+
 /// A terrain on disk that answers questions. A copy shares the file and costs nothing.
 /// Threads: all functions but use_index() are const and may be called at once. No question blocks
 /// another, and each keeps to limits of its own.
@@ -96,7 +106,8 @@ class Terrain : public OpenedTerrain {
 
   /// Heights at points in map units: surface, void and outside told apart.
   [[nodiscard]] LocateResult locate(std::span<const MapPoint> points,
-                                    const LocateRequest& request = {}) const;
+                                    const LocateRequest& request = {},
+                                    AnswerBy by = AnswerBy::kStars) const;
   /// Heights along a polyline, with a break at every edge of the TIN.
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
                                       const ProfileRequest& request = {}) const;
@@ -108,17 +119,19 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] ClassChanges class_changes(const ClassChangesRequest& request) const;
 
   /// Whether the ends of a line see each other.
-  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
+  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {},
+                                  AnswerBy by = AnswerBy::kStars) const;
   /// Sight lines of many pairs.
-  /// @param coarse_records  As for the constructor of SightSolver.
-  [[nodiscard]] SightSolver sight_lines(
-      const SightRequest& request,
-      std::uint64_t coarse_records = SightSolver::kCoarseRecords) const;
+  /// @param coarse_records  As for the constructor of SightSolver; by splits there is no coarse level.
+  [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
+                                        std::uint64_t coarse_records = SightSolver::kCoarseRecords,
+                                        AnswerBy by = AnswerBy::kStars) const;
   /// What one observer sees.
   [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
 
   /// Isolines, joined over the whole terrain.
-  [[nodiscard]] Isolines isolines(const IsolineRequest& request) const;
+  [[nodiscard]] Isolines isolines(const IsolineRequest& request,
+                                  AnswerBy by = AnswerBy::kStars) const;
 
   /// Cut, fill and net volume over or under a level, or between two terrains.
   [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
@@ -133,6 +146,12 @@ class Terrain : public OpenedTerrain {
   /// Whether the records are closed and saturated, which every question stands on: what verify
   /// looks at beside verify_store().
   [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request = {}) const;
+
+ private:
+  /// The file has one index of stars, so another index in use means records.
+  [[nodiscard]] bool is_by_splits(AnswerBy by) const noexcept {
+    return by == AnswerBy::kSplits || uses_other_index();
+  }
 };
 
 }  // namespace ptin

@@ -152,7 +152,7 @@ std::vector<KindOfQuestion> questions() {
       {"Sight",
        [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
-         return [&t, pair] { (void)sight(t, pair); };
+         return [&t, pair] { (void)t.sight(pair); };
        }},
       {"SightSolver",
        [](const Terrain& t, const Store& s) -> Asking {
@@ -163,7 +163,7 @@ std::vector<KindOfQuestion> questions() {
       {"UprightSight",  // decided without a record
        [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 1, spot_at(s->facts(), 0.1, 0.1), 2};
-         return [&t, pair] { (void)sight(t, pair); };
+         return [&t, pair] { (void)t.sight(pair); };
        }},
       {"Highest",
        [](const Terrain& t, const Store&) -> Asking { return [&] { (void)highest(t, {}); }; }},

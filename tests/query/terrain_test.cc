@@ -86,8 +86,8 @@ every_question() {
        [](const Terrain& t, const QueryLimits& l) {
          LocateRequest request;
          request.limits = l;
-         request.by = AnswerBy::kSplits;  // by stars two points fit any limit
-         static_cast<void>(t.locate(line, request));
+         // By stars two points fit any limit.
+         static_cast<void>(t.locate(line, request, AnswerBy::kSplits));
        }},
       {"profile",
        [](const Terrain& t, const QueryLimits& l) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/measure/question_runs.h"
-
 #include <algorithm>
 
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "tools/measure/io_run.h"
 #include "tools/measure/part_time.h"
 
 namespace ptin::tools {

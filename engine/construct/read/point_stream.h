@@ -20,12 +20,19 @@ namespace ptin {
 
 struct ExternalMemory;
 
-/// What a stream may use while it is opened. Only the vertices of a TIN need it: they are sorted on
-/// disk before the first of them comes (tin/tin_vertices.h).
+/// Told of a row of a text that is no point and is passed over: its line, from 1, and what is wrong
+/// with it.
+using TakeInvalidRow = std::function<void(std::uint64_t line, const std::string& fault)>;
+
+/// What a stream may use. Memory, stop and progress are for opening the vertices of a TIN alone: they
+/// are sorted on disk before the first of them comes (tin/tin_vertices.h).
 struct StreamResources {
   const ExternalMemory* memory = nullptr;  ///< Not owned; null: the stream chooses.
   std::stop_token stop;
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< May be empty.
+  /// Text: rows that are no points are passed over, whatever PointChoice says, and told here; empty:
+  /// PointChoice decides.
+  TakeInvalidRow invalid_row{};
 };
 
 /// One input file as a stream of points. Not thread-safe. The file stays open as long as the stream

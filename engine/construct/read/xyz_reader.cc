@@ -6,10 +6,10 @@
 namespace ptin {
 
 XyzReader::XyzReader(std::string path, std::vector<std::string> columns, const PointPart& part,
-                     bool skips_invalid)
+                     TakeInvalidRow invalid_row)
     : table_(std::move(path), part),
       rows_(table_, point_roles(), std::move(columns)),
-      skips_invalid_(skips_invalid) {
+      invalid_row_(std::move(invalid_row)) {
   table_.let_rows_misfit();
 }
 
@@ -52,13 +52,10 @@ bool XyzReader::next(XyzPoint& point) {
         is_number(2, point.z)) {
       return true;
     }
-    if (!skips_invalid_) {
+    if (!invalid_row_) {
       table_.refuse(fault() + "; --skip-invalid passes over such rows");
     }
-    if (skipped_.rows++ == 0) {
-      skipped_.line = table_.line();
-      skipped_.fault = fault();
-    }
+    invalid_row_(table_.line(), fault());
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/text_rows.h"
 #include "engine/construct/read/text_table.h"
 
@@ -24,9 +25,10 @@ class XyzReader {
   ///                 a header.
   /// @throws Error as TextTable; invalid_argument  `columns` lacks a coordinate
   /// @param part     As of TextTable.
-  /// @param skips_invalid  Rows that are no points are passed over.
+  /// @param invalid_row  Rows that are no points are passed over, and told here; empty: they are
+  ///                     errors.
   explicit XyzReader(std::string path, std::vector<std::string> columns = {},
-                     const PointPart& part = {}, bool skips_invalid = false);
+                     const PointPart& part = {}, TakeInvalidRow invalid_row = {});
   /// Reads `text`, which it keeps, instead of a file; `name` stands for the path in errors.
   XyzReader(std::string name, std::string text, std::vector<std::string> columns = {});
 
@@ -40,13 +42,6 @@ class XyzReader {
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
-  /// The rows that were passed over, and what is wrong with the first of them, at its line.
-  struct Skipped {
-    std::uint64_t rows = 0;
-    std::uint64_t line = 0;
-    std::string fault;
-  };
-  [[nodiscard]] const Skipped& skipped() const noexcept { return skipped_; }
   /// Declarations of the comments before the first row, which this reads.
   /// @throws Error as next()
   [[nodiscard]] const DeclaredComments& declared() {
@@ -70,8 +65,7 @@ class XyzReader {
 
   TextTable table_;
   TextRows rows_;
-  bool skips_invalid_ = false;
-  Skipped skipped_;
+  TakeInvalidRow invalid_row_;
 };
 
 }  // namespace ptin

@@ -14,7 +14,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/heights/region_border.h"
-#include "engine/query/living/living_ties.h"
+#include "engine/query/living/level_stars.h"
 #include "engine/query/select/detail.h"
 #include "storage/packed_rtree.h"
 
@@ -46,7 +46,7 @@ class HighestSearch final : private BestStarVisitor {
         request_(request),
         context_(request.limits, store_.path()),
         detail_(checked(request).detail, terrain.record_source(), context_),
-        ties_(detail_) {
+        stars_(store_, detail_) {
     filter_.box = facts_.bounds;
     if (request.region) {
       region_.emplace(*request.region, facts_.map);
@@ -96,10 +96,11 @@ class HighestSearch final : private BestStarVisitor {
   }
 
   void search() {
-    visit_living(store_.t0(), detail_.level(), [&](const LivingTriangle& t) { take(t); });
+    const auto look = [&](const LivingTriangle& t) { look_at(t); };
+    stars_.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); }, is_surface, look);
     store_.star_index().search_stars_best_first(filter_, *this, cut_off(), context_.cost.io);
     // What was set aside raised no cut-off, so nothing was left out for its sake.
-    ties_.settle([&](const LivingTriangle& t) { look_at(t); });
+    stars_.settle(look);
   }
 
   /// The highest vertex of these stars, at the least key in their box.
@@ -116,24 +117,12 @@ class HighestSearch final : private BestStarVisitor {
       const double last = best_.rbegin()->value;
       filter_.heights = request_.lowest ? Interval{-kInfinity, -last} : Interval{last, kInfinity};
     }
-    const auto take_it = [&](const LivingTriangle& t) { take(t); };
-    if (filter_.with_ties) {
-      stars_.clear();
-      context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
-      context_.cost.stars_read += stars_.size();
-      ties_.note_fans(stars_);
-      visit_living(stars_, detail_, facts_.heights, take_it);
-    } else {
-      living_.clear();
-      context_.cost.records_examined +=
-          store_.read_living(page, filter_, living_, context_.cost.io);
-      context_.cost.stars_read += living_.stars.size();
-      visit_living(living_, facts_.heights, take_it);
-    }
-    context_.admit(
-        best_.size() * kBytesACandidate + ties_.bytes() +
-        stars_.splits.size() * sizeof(VertexSplit) + stars_.corners.size() * sizeof(RingCorner) +
-        living_.stars.size() * sizeof(LivingStar) + living_.corners.size() * sizeof(LivingCorner));
+    stars_.read(page, filter_, context_);
+    stars_.visit_page([&](const GridBox& box) { return meets(box, filter_.box); }, is_surface,
+                      [&](const LivingTriangle& t) { look_at(t); });
+    context_.admit(best_.size() * kBytesACandidate + stars_.bytes_aside() +
+                   stars_.living().stars.size() * sizeof(LivingStar) +
+                   stars_.living().corners.size() * sizeof(LivingCorner));
     return cut_off();
   }
 
@@ -144,11 +133,7 @@ class HighestSearch final : private BestStarVisitor {
                                            : Merit{-kInfinity, 0};
   }
 
-  void take(const LivingTriangle& t) {
-    if (!t.is_void && meets(box_of(t), filter_.box) && !ties_.set_aside(t)) {
-      look_at(t);
-    }
-  }
+  [[nodiscard]] static bool is_surface(const LivingTriangle& t) { return !t.is_void; }
 
   [[nodiscard]] double value_of(const LivingTriangle::Corner& c) const {
     const double code = facts_.heights.code(c.height);
@@ -235,12 +220,10 @@ class HighestSearch final : private BestStarVisitor {
   const HighestRequest& request_;
   QueryContext context_;
   Detail detail_;
-  LivingTies ties_;
+  LevelStars stars_;
   std::optional<GridRegion> region_;
   std::optional<RegionBorder> border_;
-  StarFilter filter_;
-  LivingStars living_;
-  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
+  LivingFilter filter_;
   std::set<HighCandidate> best_;
   ValuedPlace on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };

@@ -12,7 +12,6 @@
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_tiles.h"
 #include "engine/query/select/detail.h"
-#include "engine/query/select/predicate.h"
 
 namespace ptin {
 
@@ -43,8 +42,7 @@ constexpr std::uint64_t kBytesAPointOut = 80;
 class IsolineExtraction {
  public:
   IsolineExtraction(const OpenedTerrain& terrain, const IsolineRequest& request)
-      : terrain_(terrain),
-        store_(terrain.store()),
+      : store_(terrain.store()),
         request_(request),
         levels_(request.levels, store_.facts().heights),
         context_(request.limits, store_.path()),
@@ -66,9 +64,9 @@ class IsolineExtraction {
     }
   }
 
-  Isolines run() {
+  Isolines run(const TraceTerrain& trace) {
     context_.admit(kSmallestLimit);
-    trace();
+    trace_terrain(trace);
     result_.lines_ = join_pieces(result_.pieces_, context_);
     admit_lines();
     if (clip_) {
@@ -88,7 +86,7 @@ class IsolineExtraction {
   }
 
  private:
-  void trace() {
+  void trace_terrain(const TraceTerrain& trace) {
     TileTraceRequest request{
         levels_,
         detail_,
@@ -98,25 +96,10 @@ class IsolineExtraction {
         bytes_of_share(request_, kShareOfPieces),
         request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
-    const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
-    TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)
-                                 : trace_by_splits(terrain_, request, *crossed_records(),
-                                                   result_.points_, context_.cost);
+    TileTraces traces = trace(request, result_.points_, context_.cost);
     result_.pieces_ = std::move(traces.pieces);
     result_.crossed = traces.counts;
     result_.tiles = traces.tiles;
-  }
-
-  /// True for the records that the levels may cross in the region, at the level of detail.
-  [[nodiscard]] PredicatePtr crossed_records() const {
-    std::vector<PredicatePtr> parts{levels_.crossing()};
-    if (request_.region) {
-      parts.push_back(meets_region(*request_.region, store_.facts().map));
-    }
-    if (detail_.is_asked()) {
-      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
-    }
-    return all_of(std::move(parts));
   }
 
   /// Checks that the longest line fits. Lines are joined and written in the memory that tiles have
@@ -184,7 +167,6 @@ class IsolineExtraction {
     result_.cost = context_.cost;
   }
 
-  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const IsolineRequest& request_;
   LevelSet levels_;
@@ -200,12 +182,20 @@ Isoline Isolines::line(std::size_t i, std::vector<MapPoint>& points) const {
   return {lines_.lines[i].level, lines_.lines[i].ring, points};
 }
 
-Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {
+Isolines extract_isolines(const OpenedTerrain& terrain, const IsolineRequest& request,
+                          const TraceTerrain& trace) {
   const auto start = std::chrono::steady_clock::now();
-  Isolines result = IsolineExtraction(terrain, request).run();
+  Isolines result = IsolineExtraction(terrain, request).run(trace);
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {
+  return extract_isolines(terrain, request,
+                          [&](const TileTraceRequest& tiles, PointStore& points, QueryCost& cost) {
+                            return trace_tiles(terrain, tiles, points, cost);
+                          });
 }
 
 }  // namespace ptin

@@ -3,17 +3,12 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/stars_in_region.h"
-#include "engine/query/refine/refinement.h"
-#include "engine/query/select/predicate.h"
-#include "engine/query/select/retrieval.h"
 #include "engine/query/shape/tiler.h"
 
 namespace ptin {
@@ -25,48 +20,11 @@ std::string size_text(std::uint64_t bytes) {
                             : std::to_string((bytes + 0xFFFFF) >> 20) + " MiB";
 }
 
-/// Where all workers put what they traced.
-class Collected {
- public:
-  Collected(PointStore& points, std::uint64_t piece_bytes, std::string file)
-      : points_(points), most_pieces_(piece_bytes / kBytesAPiece), file_(std::move(file)) {}
-
-  void add(const TracedPieces& traced, const TraceCounts& counts) {
-    const std::vector<IsolinePiece>& pieces = traced.pieces;
-    const std::lock_guard lock(mutex_);
-    if (all_.pieces.size() + pieces.size() > most_pieces_) {
-      throw Error(ErrorCode::resource_exhausted,
-                  "there are more than " + std::to_string(most_pieces_) +
-                      " pieces of isolines to join, which is all that the memory holds: give more "
-                      "memory, or ask for fewer levels, a window or a larger error",
-                  file_);
-    }
-    const std::size_t before = all_.pieces.size();
-    all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
-    for (IsolinePiece& piece : std::span(all_.pieces).subspan(before)) {
-      piece.first += points_.size();
-    }
-    points_.add(traced.points);
-    all_.counts.triangles += counts.triangles;
-    all_.counts.vertices += counts.vertices;
-    all_.counts.segments += counts.segments;
-    ++all_.tiles;
-  }
-  [[nodiscard]] TileTraces release() { return std::move(all_); }
-
- private:
-  std::mutex mutex_;
-  PointStore& points_;
-  std::uint64_t most_pieces_;
-  std::string file_;
-  TileTraces all_;
-};
-
 /// Gathers and traces tiles, one after the other, in the same memory.
 class Worker final : private LivingVisitor {
  public:
   Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
-         Collected& collected)
+         TraceCollector& collected)
       : store_(terrain.store()),
         request_(request),
         collected_(collected),
@@ -133,7 +91,7 @@ class Worker final : private LivingVisitor {
 
   const StoreFile& store_;
   const TileTraceRequest& request_;
-  Collected& collected_;
+  TraceCollector& collected_;
   QueryContext context_;
   StarsInRegion stars_in_region_;
   LivingPlace place_;
@@ -147,38 +105,37 @@ class Worker final : private LivingVisitor {
 
 }  // namespace
 
+void TraceCollector::add(const TracedPieces& traced, const TraceCounts& counts) {
+  const std::vector<IsolinePiece>& pieces = traced.pieces;
+  const std::lock_guard lock(mutex_);
+  if (all_.pieces.size() + pieces.size() > most_pieces_) {
+    throw Error(ErrorCode::resource_exhausted,
+                "there are more than " + std::to_string(most_pieces_) +
+                    " pieces of isolines to join, which is all that the memory holds: give more "
+                    "memory, or ask for fewer levels, a window or a larger error",
+                file_);
+  }
+  const std::size_t before = all_.pieces.size();
+  all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
+  for (IsolinePiece& piece : std::span(all_.pieces).subspan(before)) {
+    piece.first += points_.size();
+  }
+  points_.add(traced.points);
+  all_.counts.triangles += counts.triangles;
+  all_.counts.vertices += counts.vertices;
+  all_.counts.segments += counts.segments;
+  ++all_.tiles;
+}
+
 TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                        PointStore& points, QueryCost& cost) {
-  Collected collected(points, request.piece_bytes, terrain.store().path());
+  TraceCollector collected(request, points, terrain.store().path());
   const auto make = [&](std::uint64_t bytes) {
     return std::make_unique<Worker>(terrain, request, bytes, collected);
   };
   for (const auto& worker : workers_on_tiles(terrain.store().facts().bounds, request.tiles, make)) {
     cost.add_counts(worker->cost());
   }
-  return collected.release();
-}
-
-TileTraces trace_by_splits(const OpenedTerrain& terrain, const TileTraceRequest& request,
-                           const AttributePredicate& predicate, PointStore& points,
-                           QueryCost& cost) {
-  const StoreFile& store = terrain.store();
-  const StoreFacts& facts = store.facts();
-  QueryContext context({request.tiles.memory_bytes, request.stop}, store.path());
-  std::vector<PendingSplit> splits =
-      retrieve(terrain.record_source(), predicate, bytes_of(terrain.t0()), context);
-  request.detail.keep(splits);
-  Refinement refinement(terrain.t0());
-  refinement.apply(splits, context);
-  const std::uint64_t bytes = bytes_of(terrain.t0()) + refinement_bytes(splits.size());
-  LineTracer tracer(request.levels, facts.heights, facts.map, context);
-  if (!trace_mesh(refinement.tin(), {facts.bounds, request.region, request.counts_vertices},
-                  context.left_beside(bytes), tracer)) {
-    context.admit(bytes + tracer.bytes_wanted());
-  }
-  Collected collected(points, request.piece_bytes, store.path());
-  collected.add(tracer.join(), tracer.counts());
-  cost.add_counts(context.cost);
   return collected.release();
 }
 

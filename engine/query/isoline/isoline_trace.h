@@ -16,11 +16,11 @@
 #include "engine/query/isoline/isoline_chains.h"
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
+#include "engine/query/living/living_stars.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/region.h"
 #include "storage/layout.h"
-#include "storage/living_stars.h"
 
 namespace ptin {
 
@@ -115,12 +115,5 @@ class LineTracer {
   std::array<Corner, layout::kMostDegree + 1> corners_{};
   std::array<bool, layout::kMostDegree + 1> is_wanted_{}, is_crossed_{};
 };
-
-/// Begins to trace, and adds the triangles of a mesh. False when they take more than `most_bytes`, not
-/// counting mesh and pieces.
-/// @throws Error cancelled
-/// Cost: linear in the mesh, and in the segments.
-[[nodiscard]] bool trace_mesh(const Tin& tin, const TraceScope& scope, std::uint64_t most_bytes,
-                              LineTracer& tracer);
 
 }  // namespace ptin

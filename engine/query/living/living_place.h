@@ -7,7 +7,7 @@
 #include <functional>
 #include <span>
 
-#include "engine/query/living/living_ties.h"
+#include "engine/query/living/level_stars.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -22,9 +22,9 @@ struct LivingPlace {
   Interval heights = kAllHeights;
   /// A further condition of pages (StarFilter::also); borrowed; null: none.
   const StarPredicate* stars = nullptr;
-  bool asks_each_star = false;  ///< StarFilter::also_of_stars.
+  bool asks_each_star = false;  ///< LivingFilter::each is `stars`.
   /// Ascending ordered heights, borrowed: triangles with a step within what their corners span
-  /// (storage/attributes.h, steps_within()). Empty: all.
+  /// (steps_within()). Empty: all.
   std::span<const std::uint64_t> steps;
   /// A further condition of a triangle; none: all are wanted.
   std::function<bool(const LivingTriangle&)> wanted;
@@ -54,7 +54,7 @@ class LivingReader {
  public:
   /// @param terrain, detail  Borrowed for the life of the reader.
   LivingReader(const OpenedTerrain& terrain, const Detail& detail)
-      : store_(terrain.store()), heights_(store_.facts().heights), detail_(detail), ties_(detail) {}
+      : store_(terrain.store()), heights_(store_.facts().heights), stars_(store_, detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
   /// of the file, then those that the level tells last. False when the visitor ended it.
@@ -73,19 +73,12 @@ class LivingReader {
   template <class Page>
   bool take_page(const Page& page, const LivingPlace& place, QueryContext& context,
                  LivingVisitor& visitor);
-  template <class Page>
-  bool take_tied_page(const Page& page, const LivingPlace& place, QueryContext& context,
-                      LivingVisitor& visitor);
   [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
-  void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);
 
   const StoreFile& store_;
   HeightEncoding heights_;
-  const Detail& detail_;
-  StarFilter filter_;
-  LivingStars living_;
-  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
-  LivingTies ties_;
+  LivingFilter filter_;
+  LevelStars stars_;
 };
 
 }  // namespace ptin

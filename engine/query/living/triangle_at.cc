@@ -112,7 +112,7 @@ class Finder {
   const StoreFile& store_;
   QueryContext& context_;
   std::uint64_t held_;
-  StarFilter filter_;
+  LivingFilter filter_;
   std::vector<StarPage> pages_;
   LevelStars stars_;
 };

@@ -21,11 +21,9 @@ constexpr double kShareSlack = 0x1p-40;
 SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
                        const SightRequest& request, const CoarseGround* coarse,
                        const SightLine& line, QueryContext& context)
-    : terrain_(terrain),
-      facts_(facts),
-      request_(request),
+    : SightSearch(facts, request, context),
+      terrain_(terrain),
       coarse_(coarse),
-      context_(context),
       line_(line),
       origin_(grid_of(line.p())),
       full_detail_(terrain.store()),
@@ -48,18 +46,7 @@ void SightStars::state_domain(SightEnd& end, Spot spot) const {
   });
 }
 
-bool SightStars::ends_known() const noexcept {
-  return (line_.a.known && line_.b.known) || (request_.absolute && !facts_.has_voids);
-}
-
-bool SightStars::out_of_budget() const noexcept {
-  return request_.budget && context_.cost.stars_read >= *request_.budget;
-}
-
-void SightStars::finish_ends() {
-  if (ends_known() || out_of_budget()) {
-    return;
-  }
+void SightStars::find_ends() {
   const std::array<Spot, 2> spots{line_.p(), line_.q()};
   const std::array<SightEnd*, 2> ends{&line_.a, &line_.b};
   std::array<TriangleAt, 2> at;

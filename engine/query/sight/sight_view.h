@@ -26,6 +26,7 @@ struct KnownStretch {
 class SightView : public SightLine {
  public:
   using SightLine::SightLine;
+  explicit SightView(const SightLine& line) : SightLine(line) {}
 
   std::vector<KnownStretch> known;
   /// Records at the ends of a larger deviation are applied. Negative: all are. Infinite: none is

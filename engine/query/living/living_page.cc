@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/living_page.h"
+#include "engine/query/living/living_page.h"
 
-#include <algorithm>
+#include <array>
 #include <bit>
+#include <cstddef>
 
+#include "engine/query/living/star_choice.h"
 #include "storage/bit_fields.h"
 #include "storage/descriptor.h"
 #include "storage/page_columns.h"
@@ -11,9 +13,15 @@
 
 namespace ptin {
 
+namespace {
+
+constexpr std::uint32_t kRun = PageRun::kMost;
+/// The records of one run of rings, as bits of a run of records.
+constexpr std::uint64_t kOneRingRun = (std::uint64_t{1} << layout::kRingRun) - 1;
+
 /// Where the rings of a run's records lie, and what their corners are made of. Widths may be any,
 /// until is_sound() is asked.
-struct LivingPage::Shapes {
+struct Shapes {
   using Column = std::array<std::uint64_t, kRun>;
   Column degree, offset_bits, height_bits, death_bits, bit;  // NOLINT: written before read
   Column living;  ///< Bit i: triangle i lives. Of the first 64.
@@ -31,26 +39,7 @@ struct LivingPage::Shapes {
   }
 };
 
-namespace {
-
-/// The records of one run of rings, as bits of a run of records.
-constexpr std::uint64_t kOneRingRun = (std::uint64_t{1} << layout::kRingRun) - 1;
-
-}  // namespace
-
-/// The other numbers of a run's records, as far as a living triangle needs them.
-struct LivingPage::Heads {
-  static constexpr std::array kColumns{
-      PageColumn::kX,     PageColumn::kY,     PageColumn::kHeight, PageColumn::kBelow,
-      PageColumn::kAbove, PageColumn::kError, PageColumn::kFlags,  PageColumn::kDeviation};
-  std::array<std::array<std::uint64_t, kRun>, kPageColumns> column;  // NOLINT
-
-  [[nodiscard]] std::int64_t at(PageColumn c, std::uint32_t k) const noexcept {
-    return static_cast<std::int64_t>(column[static_cast<std::size_t>(c)][k]);
-  }
-};
-
-struct LivingPage::Corner {
+struct Corner {
   std::int64_t x, y;  ///< From u.
   std::int64_t height;
   std::uint32_t death;
@@ -58,7 +47,7 @@ struct LivingPage::Corner {
 };
 
 /// A star with what its corners are held against.
-struct LivingPage::Star {
+struct Star {
   LivingStar star;
   std::uint32_t error;     ///< Short bits.
   bool is_closed;          ///< As has_closed_ring().
@@ -68,7 +57,7 @@ struct LivingPage::Star {
 
 /// Takes the corners of a ring apart. A corner takes up to 112 bits, nearly always fewer than 57:
 /// then one load gets all of it.
-class LivingPage::Corners {
+class Corners {
  public:
   Corners(const Shapes& shapes, std::uint32_t k, const layout::PageHeader& h) noexcept
       : offset_(static_cast<unsigned>(shapes.offset_bits[k])),
@@ -108,40 +97,86 @@ class LivingPage::Corners {
   unsigned offset_, height_, death_, void_, no_height_;
 };
 
-LivingPage::LivingPage(const RecordPage& page, const layout::NodeEntry& d,
-                       const HeightEncoding& heights, const StarFilter& filter) noexcept
+/// Takes out of a page what a filter asks for.
+class LivingPage {
+ public:
+  LivingPage(const RecordPage& page, const LivingFilter& filter) noexcept;
+
+  /// Returns records(), or the first record that cannot be what was written, or that the descriptor
+  /// excludes: then what was appended is not to be used.
+  [[nodiscard]] std::uint32_t take(LivingStars& out) const;
+
+ private:
+  void read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& out) const noexcept;
+  [[nodiscard]] std::uint64_t find_living(PageRun& run, std::uint64_t wanted,
+                                          Shapes& shapes) const noexcept;
+  [[nodiscard]] bool lives(std::uint32_t death, std::uint32_t error) const noexcept;
+  [[nodiscard]] bool is_tie(std::uint32_t death, std::uint32_t error) const noexcept;
+  [[nodiscard]] bool read_star(const PageRun& run, std::uint32_t k, Star& out) const noexcept;
+  [[nodiscard]] bool take_star(const Shapes& shapes, const Star& star, std::uint32_t k,
+                               LivingStars& out) const;
+  [[nodiscard]] bool is_plain(const Shapes& shapes, const Star& star,
+                              std::uint32_t k) const noexcept;
+  [[nodiscard]] bool take_plain(const Shapes& shapes, const Star& star, std::uint32_t k,
+                                LivingStars& out) const;
+  [[nodiscard]] bool take_any(const Shapes& shapes, const Star& star, std::uint32_t k,
+                              LivingStars& out) const;
+  [[nodiscard]] bool has_step(const Star& star, std::size_t begin,
+                              const LivingStars& out) const noexcept;
+  [[nodiscard]] bool add(const Star& star, std::size_t begin, LivingStars& out) const;
+
+  const RecordPage& page_;
+  const layout::NodeEntry& descriptor_;
+  HeightType type_;
+  const LivingFilter& filter_;
+  std::int32_t level_;
+  bool is_within_;                                  ///< All stars lie in the filter's box.
+  std::int64_t low_, high_, star_low_, star_high_;  ///< Heights of the descriptor, ordered.
+  HeightInterval no_heights_;
+  std::span<const std::uint64_t> steps_;  ///< Those of the filter that lie within the page.
+};
+
+LivingPage::LivingPage(const RecordPage& page, const LivingFilter& filter) noexcept
     : page_(page),
-      descriptor_(d),
-      heights_(heights),
+      descriptor_(page.descriptor()),
+      type_(page.heights().type),
       filter_(filter),
       level_(level_bits(filter.level)),
-      is_within_(contains(filter.box, {d.star_min_x, d.star_min_y, d.star_max_x, d.star_max_y})),
-      low_(ordered_height(d.height_lo, heights.type)),
-      high_(ordered_height(d.height_hi, heights.type)),
-      star_low_(ordered_height(d.star_height_lo, heights.type)),
-      star_high_(ordered_height(d.star_height_hi, heights.type)),
-      no_heights_(no_heights(heights.type)),
-      steps_(steps_within(filter.steps, ordered_height(d.star_height_lo, heights.type),
-                          ordered_height(d.star_height_hi, heights.type))) {}
+      is_within_(contains(filter.box, {descriptor_.star_min_x, descriptor_.star_min_y,
+                                       descriptor_.star_max_x, descriptor_.star_max_y})),
+      low_(ordered_height(descriptor_.height_lo, type_)),
+      high_(ordered_height(descriptor_.height_hi, type_)),
+      star_low_(ordered_height(descriptor_.star_height_lo, type_)),
+      star_high_(ordered_height(descriptor_.star_height_hi, type_)),
+      no_heights_(no_heights(type_)),
+      steps_(steps_within(filter.steps, ordered_height(descriptor_.star_height_lo, type_),
+                          ordered_height(descriptor_.star_height_hi, type_))) {}
 
 std::uint32_t LivingPage::take(LivingStars& out) const {
+  // The numbers of a star beside its shape, as far as a living triangle needs them.
+  constexpr std::array kHead{PageColumn::kX,     PageColumn::kY,        PageColumn::kHeight,
+                             PageColumn::kBelow, PageColumn::kAbove,    PageColumn::kError,
+                             PageColumn::kFlags, PageColumn::kDeviation};
   Shapes shapes;  // NOLINT: written before read
-  Heads heads;    // NOLINT: written before read
   Star star;
-  for (std::uint32_t first = 0; first < page_.records(); first += kRun) {
-    const std::uint32_t count = std::min(kRun, page_.records() - first);
-    std::uint64_t left = page_.near_stars(first, count, filter_, is_within_);
+  for (PageRun run(page_); run.next();) {
+    std::uint64_t left = chosen_stars(page_, filter_, is_within_, run);
     if (left == 0) {
       continue;
     }
-    read_shapes(first, count, left, shapes);
-    left = find_living(first, left, shapes);
-    read_heads(first, count, left, heads);
+    read_shapes(run, left, shapes);
+    left = find_living(run, left, shapes);
+    for (const PageColumn c : kHead) {
+      run.take_some(c, left);
+    }
+    if (filter_.with_ties) {
+      run.take_some(PageColumn::kRank, left);
+    }
     for (; left != 0; left &= left - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-      if (!shapes.is_sound(k, page_.columns().rings_end()) || !read_star(heads, k, star) ||
+      if (!shapes.is_sound(k, page_.columns().rings_end()) || !read_star(run, k, star) ||
           !take_star(shapes, star, k, out)) [[unlikely]] {
-        return first + k;
+        return run.first() + k;
       }
     }
   }
@@ -149,24 +184,24 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
 }
 
 /// Reads the shapes of the runs of rings that hold a wanted record.
-void LivingPage::read_shapes(std::uint32_t first, std::uint32_t count, std::uint64_t wanted,
-                             Shapes& out) const noexcept {
+void LivingPage::read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& out) const noexcept {
   const PageColumns& columns = page_.columns();
   const std::byte* const bytes = page_.bytes();
   out.common_bits = columns.common_bits();
-  for (std::uint32_t begin = 0; begin < count; begin += layout::kRingRun) {
+  for (std::uint32_t begin = 0; begin < run.count(); begin += layout::kRingRun) {
     if ((wanted >> begin & kOneRingRun) == 0) {
       continue;
     }
-    const std::uint32_t end = std::min(begin + layout::kRingRun, count);
+    const std::uint32_t end = std::min(begin + layout::kRingRun, run.count());
     const auto read = [&](PageColumn c, Shapes::Column& column) {
-      columns.read_run(bytes, c, first + begin, std::span(column).subspan(begin, end - begin));
+      columns.read_run(bytes, c, run.first() + begin,
+                       std::span(column).subspan(begin, end - begin));
     };
     read(PageColumn::kDegree, out.degree);
     read(PageColumn::kOffsetBits, out.offset_bits);
     read(PageColumn::kHeightBits, out.height_bits);
     read(PageColumn::kDeathBits, out.death_bits);
-    out.bit[begin] = columns.run_begin(bytes, (first + begin) / layout::kRingRun);
+    out.bit[begin] = columns.run_begin(bytes, (run.first() + begin) / layout::kRingRun);
     for (std::uint32_t k = begin + 1; k < end; ++k) {
       out.bit[k] = out.end(k - 1);
     }
@@ -181,10 +216,21 @@ bool LivingPage::lives(std::uint32_t death, std::uint32_t error) const noexcept 
                           error + kFirstAboveBase <= death + static_cast<std::uint32_t>(level_);
 }
 
+/// Whether a triangle that lives dies at the level's own error, which tells it from others with
+/// `with_ties` alone.
+bool LivingPage::is_tie(std::uint32_t death, std::uint32_t error) const noexcept {
+  return death == 1 ? level_ == 0
+                    : death > 1 && error + kFirstAboveBase ==
+                                       death + static_cast<std::uint32_t>(std::max(level_, 0));
+}
+
 /// Those of the wanted records of a run of whose stars a triangle lives, and those that are not
 /// sound.
-std::uint64_t LivingPage::find_living(std::uint32_t first, std::uint64_t wanted,
+std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
                                       Shapes& shapes) const noexcept {
+  if (level_ >= 0) {  // else deaths tell alone
+    run.take_some(PageColumn::kError, wanted);
+  }
   const std::size_t rings_end = page_.columns().rings_end();
   std::uint64_t result = 0;
   for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
@@ -200,7 +246,7 @@ std::uint64_t LivingPage::find_living(std::uint32_t first, std::uint64_t wanted,
       result |= std::uint64_t{1} << k;
       continue;
     }
-    const std::uint32_t error = level_ < 0 ? 0 : page_.error_bits(first + k);
+    const std::uint32_t error = level_ < 0 ? 0 : run.error_bits(k);
     const std::uint64_t step = shapes.corner_bits(k);
     std::size_t bit = shapes.bit[k] + 2 * shapes.offset_bits[k] + shapes.height_bits[k];
     std::uint64_t living = 0;
@@ -211,43 +257,26 @@ std::uint64_t LivingPage::find_living(std::uint32_t first, std::uint64_t wanted,
       living |= std::uint64_t{is_one} << (i % 64);
     }
     shapes.living[k] = living;
-    result |= std::uint64_t{living != 0} << k;
+    const bool is_tied = filter_.with_ties && static_cast<std::int64_t>(error) == level_;
+    result |= std::uint64_t{living != 0 || is_tied} << k;
   }
   return result;
 }
 
-void LivingPage::read_heads(std::uint32_t first, std::uint32_t count, std::uint64_t wanted,
-                            Heads& out) const noexcept {
-  // A run of numbers is unpacked four times faster than as many single ones.
-  const bool are_many = 4 * static_cast<std::uint32_t>(std::popcount(wanted)) >= count;
-  for (const PageColumn c : Heads::kColumns) {
-    std::array<std::uint64_t, kRun>& column = out.column[static_cast<std::size_t>(c)];
-    if (are_many) {
-      page_.columns().read_run(page_.bytes(), c, first, std::span(column).first(count));
-      continue;
-    }
-    for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
-      const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-      column[k] = page_.columns().at(page_.bytes(), c, first + k);
-    }
-  }
-}
-
 /// A star without its corners. False when it cannot be one.
-bool LivingPage::read_star(const Heads& heads, std::uint32_t k, Star& out) const noexcept {
-  const auto at = [&](PageColumn c) { return heads.at(c, k); };
-  const layout::PageHeader& h = page_.columns().header();
+bool LivingPage::read_star(const PageRun& run, std::uint32_t k, Star& out) const noexcept {
+  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
   const layout::NodeEntry& d = descriptor_;
   const std::int64_t x = at(PageColumn::kX);
   const std::int64_t y = at(PageColumn::kY);
   const auto flags = static_cast<unsigned>(at(PageColumn::kFlags));
   const bool has_heights = (flags & kPageNoHeights) == 0;
-  const auto deviation =
-      short_of_stored(static_cast<std::uint64_t>(at(PageColumn::kDeviation)), h.deviation);
-  out.error = short_of_stored(static_cast<std::uint64_t>(at(PageColumn::kError)), h.error);
-  out.height = at(PageColumn::kHeight);
-  out.low = out.height - at(PageColumn::kBelow);
-  out.high = out.height + at(PageColumn::kAbove);
+  const std::uint32_t deviation = run.deviation_bits(k);
+  out.error = run.error_bits(k);
+  const OrderedInterval heights = run.heights(k);
+  out.height = static_cast<std::int64_t>(heights.height);
+  out.low = static_cast<std::int64_t>(heights.low);
+  out.high = static_cast<std::int64_t>(heights.high);
   out.is_closed = (flags & (kPageNoLeft | kPageNoRight)) == 0;
   out.star.has_height = (flags & kPageVertexVoid) == 0;
   // The descriptor's boxes lie on the grid, and its heights are none but heights.
@@ -260,11 +289,15 @@ bool LivingPage::read_star(const Heads& heads, std::uint32_t k, Star& out) const
   }
   out.star.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
   const auto bits = [&](std::int64_t ordered) {
-    return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
+    return height_of_ordered(static_cast<std::uint32_t>(ordered), type_);
   };
   out.star.height = out.star.has_height ? bits(out.height) : 0;
   out.star.height_lo = has_heights ? bits(out.low) : no_heights_.lo;
   out.star.height_hi = has_heights ? bits(out.high) : no_heights_.hi;
+  out.star.is_tied = filter_.with_ties && static_cast<std::int64_t>(out.error) == level_;
+  out.star.ends_at_w = (flags & kPageNoLeft) != 0;
+  out.star.rank =
+      out.star.is_tied ? static_cast<std::uint16_t>(at(PageColumn::kRank)) : std::uint16_t{0};
   out.star.deviation = short_value(static_cast<ShortBits>(deviation));
   out.low = std::max(out.low, star_low_);
   out.high = has_heights ? std::min(out.high, star_high_) : -1;  // no corner has one
@@ -279,9 +312,10 @@ bool LivingPage::take_star(const Shapes& shapes, const Star& star, std::uint32_t
          add(star, begin, out);
 }
 
-/// Whether a star is as nearly all are: nothing is void around it, and a load gets a corner.
+/// Whether a star is as nearly all are: nothing is void around it, a load gets a corner, and where no
+/// triangle is tied.
 bool LivingPage::is_plain(const Shapes& shapes, const Star& star, std::uint32_t k) const noexcept {
-  return shapes.degree[k] < 64 && shapes.corner_bits(k) <= kMostFieldBits &&
+  return !filter_.with_ties && shapes.degree[k] < 64 && shapes.corner_bits(k) <= kMostFieldBits &&
          shapes.common_bits == 0 && star.is_closed && star.star.has_height;
 }
 
@@ -309,7 +343,7 @@ bool LivingPage::take_plain(const Shapes& shapes, const Star& star, std::uint32_
     outside |= (x - d.star_min_x) | (d.star_max_x - x) | (y - d.star_min_y) | (d.star_max_y - y) |
                (height - star.low) | (star.high - height);
     *to++ = {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-             height_of_ordered(static_cast<std::uint32_t>(height), heights_.type),
+             height_of_ordered(static_cast<std::uint32_t>(height), type_),
              static_cast<std::uint8_t>((living >> i & 1) * LivingCorner::kLives)};
   };
   const std::uint64_t ends = living << 1;
@@ -341,7 +375,7 @@ bool LivingPage::take_any(const Shapes& shapes, const Star& star, std::uint32_t 
     const Corner c = corners.at(page_.bytes(), i == degree ? shapes.bit[k] : bit);
     bit += shapes.corner_bits(k);
     const bool is_wanted = i + (star.is_closed ? 0 : 1) < degree && lives(c.death, star.error);
-    if (is_awaited || is_wanted) {
+    if (is_awaited || is_wanted || (star.star.is_tied && i < degree)) {
       const std::int64_t x = star.star.u.x + c.x;
       const std::int64_t y = star.star.u.y + c.y;
       const std::int64_t height = star.height + c.height;
@@ -350,8 +384,11 @@ bool LivingPage::take_any(const Shapes& shapes, const Star& star, std::uint32_t 
                   (!c.has_height || (star.low <= height && height <= star.high));
       *to++ = {
           {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-          c.has_height ? height_of_ordered(static_cast<std::uint32_t>(height), heights_.type) : 0,
+          c.has_height ? height_of_ordered(static_cast<std::uint32_t>(height), type_) : 0,
           static_cast<std::uint8_t>((is_wanted ? unsigned{LivingCorner::kLives} : 0U) |
+                                    (is_wanted && filter_.with_ties && is_tie(c.death, star.error)
+                                         ? unsigned{LivingCorner::kTied}
+                                         : 0U) |
                                     (c.is_void ? unsigned{LivingCorner::kVoid} : 0U) |
                                     (c.has_height ? 0U : unsigned{LivingCorner::kNoHeight}))};
     }
@@ -361,15 +398,11 @@ bool LivingPage::take_any(const Shapes& shapes, const Star& star, std::uint32_t 
   return is_inside;
 }
 
-namespace {
-
 /// Twice the area of a triangle. REQUIRES: its corners are on the grid, else it may be any number.
 std::int64_t turn(GridPoint u, GridPoint a, GridPoint b) noexcept {
   return (std::int64_t{a.x} - u.x) * (std::int64_t{b.y} - u.y) -
          (std::int64_t{a.y} - u.y) * (std::int64_t{b.x} - u.x);
 }
-
-}  // namespace
 
 /// Whether a step lies within the heights of a star whose corners were appended from `begin` on.
 bool LivingPage::has_step(const Star& star, std::size_t begin,
@@ -377,12 +410,12 @@ bool LivingPage::has_step(const Star& star, std::size_t begin,
   if (!star.star.has_height) {
     return false;
   }
-  std::uint32_t low = ordered_height(star.star.height, heights_.type);
+  std::uint32_t low = ordered_height(star.star.height, type_);
   std::uint32_t high = low;
   for (std::size_t i = begin; i < out.corners.size(); ++i) {
     const LivingCorner& c = out.corners.data()[i];
     if ((c.flags & LivingCorner::kNoHeight) == 0) {
-      const std::uint32_t height = ordered_height(c.height, heights_.type);
+      const std::uint32_t height = ordered_height(c.height, type_);
       low = std::min(low, height);
       high = std::max(high, height);
     }
@@ -393,12 +426,12 @@ bool LivingPage::has_step(const Star& star, std::size_t begin,
 /// Appends a star whose corners were appended from `begin` on, unless it is not asked for by its
 /// heights, or none of its triangles meets the filter's box. False when a triangle cannot be what was written.
 bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) const {
-  if (!filter_.steps.empty() && !has_step(star, begin, out)) {
+  if (!filter_.steps.empty() && !star.star.is_tied && !has_step(star, begin, out)) {
     out.corners.grow(begin);
     return true;
   }
   bool is_sound = true;
-  bool any = false;
+  bool any = star.star.is_tied;
   LivingCorner* const end = out.corners.data() + out.corners.size();
   for (LivingCorner* c = out.corners.data() + begin; c < end; ++c) {
     if ((c->flags & LivingCorner::kLives) == 0) {
@@ -423,6 +456,17 @@ bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) cons
   out.stars.data()[stars] = star.star;
   out.stars.data()[stars].corner_end = static_cast<std::uint32_t>(out.corners.size());
   return is_sound;
+}
+
+}  // namespace
+
+void take_living(const RecordPage& page, const LivingFilter& filter, LivingStars& out) {
+  const std::size_t before = out.stars.size();
+  const std::uint32_t sound = LivingPage(page, filter).take(out);
+  if (sound < page.records()) [[unlikely]] {
+    out.keep(before);
+    page.report(sound);
+  }
 }
 
 }  // namespace ptin

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A refinement that grows question by question and knows, for each of its triangles, what the full
-// surface under it can be: the certificates of locate and sight.
+// Selective refinement (paper, section 4): the records for which a predicate is true are retrieved,
+// sorted topologically and applied to T0. All questions of this sub-room begin with it.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,32 @@
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 
-namespace ptin {
+namespace ptin::paper {
 
-/// A mesh that starts as T0 and to which closed sets of records are added, one after the other.
+/// A mesh that begins as T0 and is refined step by step.
 ///
-/// The bounds of a triangle are those of the record that made it. Every record that refines the
-/// triangle later depends on that one, so its saturated attributes are no larger. The maker of a
+/// It knows minh(t) and maxh(t) of each triangle (paper, section 5.3), and how far the full surface
+/// deviates from it at most: those of the record that made the triangle. Every record that refines
+/// the triangle later depends on that one, so its saturated attributes are no larger. The maker of a
 /// triangle is the record of the corner of least rank: a triangle appears with the last of its
 /// corners, and every corner of a fan has a larger rank than the record that splits the fan.
 /// Threads: one owner.
-class BoundedMesh final : public BoundedSurface {
+class SelectiveRefinement final : public BoundedSurface {
  public:
-  explicit BoundedMesh(const OpenedTerrain& terrain)
-      : BoundedMesh(terrain, Detail(terrain.store())) {}
   /// @param terrain  Borrowed for the life of the mesh.
   /// @param detail   Records that it leaves out are not added, but for those that the parameter
   ///                 `beyond` of refine() names.
-  BoundedMesh(const OpenedTerrain& terrain, const Detail& detail);
+  SelectiveRefinement(const OpenedTerrain& terrain, const Detail& detail);
 
   [[nodiscard]] const Tin& tin() const noexcept override { return refinement_.tin(); }
+
+  /// The pages that may hold records for which a monotone predicate is true, ascending: the search
+  /// of the paper's trees, by the index in use (paper, section 5.4).
+  /// @throws Error corruption, cancelled, io_error
+  [[nodiscard]] std::vector<PageId> search(const AttributePredicate& predicate,
+                                           QueryContext& context) const;
+  /// Bytes that the mesh may take with the records of these pages.
+  [[nodiscard]] std::uint64_t bytes_with(std::span<const PageId> pages) const;
 
   /// Adds the records for which a monotone predicate is true and that are not there yet.
   /// @param beyond  Monotone, or null: a record for which this is true too is added although the
@@ -40,16 +47,12 @@ class BoundedMesh final : public BoundedSurface {
   /// @throws Error resource_exhausted (before a page is read), corruption, cancelled, io_error;
   ///               after an error the mesh must be thrown away
   std::size_t refine(const AttributePredicate& predicate, QueryContext& context,
-                     const AttributePredicate* beyond = nullptr);
-
+                     const AttributePredicate* beyond = nullptr) {
+    return refine(search(predicate, context), predicate, context, beyond);
+  }
   /// As refine(), for pages that the caller searched with the same predicate.
   std::size_t refine(std::span<const PageId> pages, const AttributePredicate& predicate,
                      QueryContext& context, const AttributePredicate* beyond = nullptr);
-
-  /// The pages whose attributes satisfy the predicate, ascending.  @throws Error corruption,
-  /// cancelled
-  [[nodiscard]] std::vector<PageId> search(const AttributePredicate& predicate,
-                                           QueryContext& context) const;
 
   /// Bounds of the full surface below triangle `t`; infinite for a triangle of T0.
   [[nodiscard]] SurfaceBounds bounds(TriangleId t) const noexcept override;
@@ -62,7 +65,7 @@ class BoundedMesh final : public BoundedSurface {
  private:
   /// What is kept of the record that made a vertex.
   struct Made {
-    double lowest, highest;  ///< Codes.
+    HeightBits lowest, highest;
     float deviation;
     std::uint32_t rank;
   };
@@ -76,4 +79,4 @@ class BoundedMesh final : public BoundedSurface {
   std::vector<PendingSplit> splits_;
 };
 
-}  // namespace ptin
+}  // namespace ptin::paper

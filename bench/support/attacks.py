@@ -1,56 +1,16 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `ptin serve` does while it is attacked: its memory, and how late /healthz is.
-
-usage: bench/serve_attack.py PTIN FILE [--seconds S] [--connections N] [--only NAME ...]
-
-Starts the service on FILE with --files, over loopback alone. Each attack takes S seconds (60 at most) with N connections (1000
-at most); meanwhile /healthz is asked ten times a second, each time by a new connection. A row has the slowest answer, how many
-failed, and memory without the file's pages before, at most, and three seconds after. slowhttptest is Debian's package.
-"""
-import argparse
-import os
-import re
-import shutil
-import signal
+"""Slow, greedy and broken clients of `ptin serve`, over loopback alone: functions of a service, so many seconds and so many
+connections. slowhttptest is Debian's package."""
 import socket
 import subprocess
 import threading
 import time
 
 
-class Service:
-    def __init__(self, ptin, file):
-        self.process = subprocess.Popen([ptin, "serve", f"dem={file}", "--listen", "127.0.0.1:0", "--threads", "1", "--files"],
-                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.host, self.port = re.search(r"http://([0-9.]+):(\d+)", self.process.stdout.readline()).groups()
-
-    def connect(self, receive=None):
-        client = socket.socket()
-        if receive:
-            client.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive)
-        client.settimeout(30)
-        client.connect((self.host, int(self.port)))
-        return client
-
-    def memory(self):
-        with open(f"/proc/{self.process.pid}/status") as lines:
-            kib = dict(re.findall(r"(Rss\w+|VmRSS):\s+(\d+) kB", lines.read()))
-        return (int(kib["VmRSS"]) - int(kib["RssFile"])) / 1024
-
-    def healthz(self):
-        begin = time.perf_counter()
-        client = self.connect()
-        client.sendall(b"GET /healthz HTTP/1.1\r\nHost: a\r\nConnection: close\r\n\r\n")
-        answer = client.recv(4096)
-        client.close()
-        return 1e3 * (time.perf_counter() - begin), answer.startswith(b"HTTP/1.1 200")
-
-
 def slow_http(*options):
     def attack(service, seconds, connections):
         subprocess.run(["slowhttptest", *options, "-c", str(connections), "-r", "400", "-l", str(seconds), "-i", "1", "-p", "3",
-                        "-u", f"http://{service.host}:{service.port}/collections/dem/file"],
+                        "-u", f"http://{service.address}/collections/dem/file"],
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=seconds + 60)
     return attack
 
@@ -155,50 +115,3 @@ ATTACKS = {
     "64 slow drips": drips,
     "half-closed sockets": half_closed,
 }
-
-
-def run(service, name, attack, seconds, connections):
-    late, failed, most, stop = [], [0], [0.0], threading.Event()
-
-    def watch():
-        while not stop.wait(0.1):
-            most[0] = max(most[0], service.memory())
-            try:
-                ms, is_well = service.healthz()
-                late.append(ms)
-                failed[0] += not is_well
-            except OSError:
-                failed[0] += 1
-    before = service.memory()
-    watcher = threading.Thread(target=watch)
-    watcher.start()
-    attack(service, seconds, connections)
-    stop.set()
-    watcher.join()
-    time.sleep(3)
-    late.sort()
-    print(f"| {name} | {late[len(late) // 2]:.1f} | {late[-1]:.1f} | {failed[0]} of {len(late) + failed[0]} | {before:.0f} | "
-          f"{most[0]:.0f} | {service.memory():.0f} |", flush=True)
-
-
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("ptin")
-    parser.add_argument("file")
-    parser.add_argument("--seconds", type=int, default=10)
-    parser.add_argument("--connections", type=int, default=900)
-    parser.add_argument("--only", nargs="+", default=list(ATTACKS), choices=list(ATTACKS))
-    arguments = parser.parse_args()
-    seconds, connections = min(arguments.seconds, 60), min(arguments.connections, 1000)
-    service = Service(arguments.ptin, arguments.file)
-    print("| attack | /healthz, median, ms | slowest, ms | failed | MiB before | at most | after |\n|---|---|---|---|---|---|---|")
-    for name in arguments.only:
-        if name.startswith("slowhttptest") and not shutil.which("slowhttptest"):
-            continue
-        run(service, name, ATTACKS[name], seconds, connections)
-    service.process.send_signal(signal.SIGTERM)
-    print(f"ended with status {service.process.wait(60)}")
-
-
-if __name__ == "__main__":
-    main()

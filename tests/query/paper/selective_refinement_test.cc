@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a bounded mesh says that it holds, and that questions count all of it.
-#include "engine/query/refine/bounded_mesh.h"
+// What a selective refinement says that it holds, and that questions count all of it.
+#include "engine/query/paper/selective_refinement.h"
 
 #include <cstdint>
 #include <random>
@@ -14,7 +14,7 @@
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"
 
-namespace ptin {
+namespace ptin::paper {
 namespace {
 
 using reference::Hierarchy;
@@ -34,10 +34,10 @@ struct HeldTerrain {
   Terrain terrain{file.open()};
 };
 
-TEST(BoundedMesh, CountsItsArraysAndTheRecordsAddedLast) {
+TEST(SelectiveRefinement, CountsItsArraysAndTheRecordsAddedLast) {
   const HeldTerrain t;
   QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
-  BoundedMesh mesh(t.terrain);
+  SelectiveRefinement mesh(t.terrain, Detail(t.terrain.store()));
   const std::uint64_t of_t0 = mesh.bytes();
   EXPECT_GE(of_t0, array_bytes(mesh.tin()));
 
@@ -60,10 +60,11 @@ TEST(BoundedMesh, CountsItsArraysAndTheRecordsAddedLast) {
   EXPECT_GT(released, of_t0);
 }
 
-TEST(BoundedMesh, IsTheSameMeshWithoutItsRecords) {
+TEST(SelectiveRefinement, IsTheSameMeshWithoutItsRecords) {
   const HeldTerrain t;
   QueryContext context({.memory_bytes = std::uint64_t{1} << 30}, "a test");
-  BoundedMesh released(t.terrain), kept(t.terrain);
+  SelectiveRefinement released(t.terrain, Detail(t.terrain.store()));
+  SelectiveRefinement kept(t.terrain, Detail(t.terrain.store()));
   for (const double tolerance : {9.0, 3.0, 1.0, -1.0}) {
     EXPECT_EQ(released.refine(AboveError(tolerance), context),
               kept.refine(AboveError(tolerance), context));
@@ -77,12 +78,12 @@ TEST(BoundedMesh, IsTheSameMeshWithoutItsRecords) {
   }
 }
 
-TEST(BoundedMesh, IsRefusedBelowWhatItsRecordsAndArraysTake) {
+TEST(SelectiveRefinement, IsRefusedBelowWhatItsRecordsAndArraysTake) {
   const HeldTerrain t;
   std::uint64_t held = 0;
   const std::uint64_t least = reference::least_memory([&](std::uint64_t limit) {
     QueryContext context({.memory_bytes = limit}, "a test");
-    BoundedMesh mesh(t.terrain);
+    SelectiveRefinement mesh(t.terrain, Detail(t.terrain.store()));
     mesh.refine(AboveError(4.0), context);
     const std::size_t more = mesh.refine(*everything(), context);
     held = array_bytes(mesh.tin()) + more * sizeof(PendingSplit);
@@ -92,4 +93,4 @@ TEST(BoundedMesh, IsRefusedBelowWhatItsRecordsAndArraysTake) {
 }
 
 }  // namespace
-}  // namespace ptin
+}  // namespace ptin::paper

@@ -13,14 +13,19 @@
 
 namespace ptin {
 
-/// A star of which some triangle lives.
+/// A star of which some triangle lives, or one that is tied.
 struct LivingStar {
   GridPoint u;
   HeightBits height = 0;                    ///< Of u; 0 where it has none.
   HeightBits height_lo = 0, height_hi = 0;  ///< As VertexSplit has them.
   float deviation = 0.0F;                   ///< As VertexSplit has it.
+  std::uint16_t rank = 0;                   ///< As VertexSplit has it; of a tied star.
   bool has_height = false;                  ///< Of u.
-  std::uint32_t corner_end = 0;             ///< Behind its last corner.
+  /// Its record has the level's own error, and its corners are the whole ring, which ends at w where
+  /// `ends_at_w`, else begins there (storage/star.h). Where the last triangle lives, the first corner
+  /// comes once more.
+  bool is_tied = false, ends_at_w = false;
+  std::uint32_t corner_end = 0;  ///< Behind its last corner.
 };
 
 /// A corner of a living triangle, as it comes counter-clockwise around u.
@@ -29,6 +34,7 @@ struct LivingCorner {
     kLives = 1,     ///< The triangle of u, this corner and the next one lives.
     kVoid = 2,      ///< That triangle is void.
     kNoHeight = 4,  ///< The vertex has no height; `height` is 0.
+    kTied = 8,      ///< The triangle lives, and dies at the level's own error.
   };
   GridPoint position;
   HeightBits height = 0;
