@@ -103,6 +103,7 @@ set(public_headers
     engine/query/shape/clip.h
     engine/query/shape/grid_cell.h
     engine/query/shape/spot.h
+    engine/query/shape/tiler.h
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h
