@@ -38,7 +38,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace {
 

@@ -14,6 +14,7 @@
 #include "engine/check.h"
 #include "engine/construct/build_option_table.h"
 #include "engine/construct/scratch/plain_value.h"
+#include "engine/crs/crs_facts.h"
 #include "storage/file/file_questions.h"
 #include "storage/packed_segment.h"
 
@@ -228,8 +229,12 @@ void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
   facts.source_samples = report.source_samples;
   facts.free_of_voids = void_records_ == 0 && !has_void(coarsest);
   facts.page_bytes = options_.page_bytes;
+  nlohmann::json crs{{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}};
+  if (nlohmann::json told = json_of(crs_facts(frame_.crs_wkt)); !told.is_null()) {
+    crs["facts"] = std::move(told);
+  }
   const nlohmann::json metadata{
-      {"crs", {{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}}},
+      {"crs", std::move(crs)},
       {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},

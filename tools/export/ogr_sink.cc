@@ -10,10 +10,10 @@
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "tools/export/tin_samples.h"
 #include "tools/export/tin_sink.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
+#include "tools/slope.h"
 
 namespace ptin::tools {
 
@@ -99,15 +99,15 @@ class OgrSink final : public TinSink {
 
  private:
   void set_fields(const TinPatch& patch, const std::array<TinPatch::Corner, 3>& triangle) {
-    std::array<VertexId, 3> corners{};
+    std::array<CodedPoint, 3> corners{};
     MapPoint middle;
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = triangle[i].local;
+      const Vertex& v = patch.tin->vertices[triangle[i].local];
+      corners[i] = {v.position, patch.facts->heights.code(v.height)};
       const TinPatch::Point p = patch.point(triangle[i]);
       middle = {middle.x + p[0] / 3, middle.y + p[1] / 3};
     }
-    const Slope slope = slope_of(normal_of(*patch.tin, corners, patch.facts->heights), *patch.facts,
-                                 per_map_unit_(middle));
+    const Slope slope = slope_of(normal_of(corners), *patch.facts, per_map_unit_(middle));
     feature_->SetField(0, slope_in_percent_ ? percent_of(slope) : degrees_of(slope));
     if (const std::optional<double> aspect = aspect_of(slope)) {
       feature_->SetField(1, *aspect);

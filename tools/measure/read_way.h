@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/plot/axis.h"
 #include "tools/plot/canvas.h"
 

@@ -3,7 +3,7 @@
 // `refine --cut`: triangles cut at the border of a region.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 #include "tools/formats/mesh.h"
 

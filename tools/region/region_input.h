@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/region/vector_input.h"
 
 namespace ptin::tools {

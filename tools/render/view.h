@@ -3,7 +3,7 @@
 // What a picture shows: a window of the map on a rectangle of pixels, with the right aspect.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/mesh/tin.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/tile_grid.h"
 #include "tools/tiles/tile_levels.h"

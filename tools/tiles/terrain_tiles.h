@@ -30,7 +30,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/tile_pyramid.h"
 

@@ -25,7 +25,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/terrain_tiles.h"
 #include "tools/tiles/tile_pyramid.h"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 
 namespace ptin::tools {

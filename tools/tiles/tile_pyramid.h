@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/level_mesh.h"
 #include "tools/tiles/tile_grid.h"

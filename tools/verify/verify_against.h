@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/verify/source_samples.h"
 
 namespace ptin::tools {

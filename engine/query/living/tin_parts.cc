@@ -10,26 +10,12 @@
 
 namespace ptin {
 
-namespace {
-
-std::uint64_t records_above(const StoreFile& store, double tolerance) {
-  if (tolerance < 0) return store.record_count();
-  std::uint64_t records = 0;
-  for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.upper > tolerance) records += bin.records;
-  }
-  return records;
-}
-
-}  // namespace
-
 struct TinParts::Impl {
   Impl(const OpenedTerrain& of, PartRequest asked)
       : terrain(of),
         request(std::move(asked)),
         context(request.limits, of.store().path()),
         detail(request.detail, terrain.record_source(), context),
-        reader(terrain, detail),
         living(terrain, detail) {
     if (request.region) {
       region.emplace(*request.region, of.store().facts().map);
@@ -43,30 +29,8 @@ struct TinParts::Impl {
   Detail detail;
   std::optional<GridRegion> region;
   std::optional<StarsInRegion> stars;
-  LivingReader reader;
   LivingTin living;
-
-  [[nodiscard]] LivingPlace place_of(const GridBox& box) const {
-    LivingPlace place;
-    place.box = box;
-    place.stars = stars ? &*stars : nullptr;
-    return place;
-  }
 };
-
-namespace {
-
-class CallingVisitor final : public LivingVisitor {
- public:
-  explicit CallingVisitor(const std::function<void(const LivingTriangle&)>& visit)
-      : visit_(visit) {}
-  void take(const LivingTriangle& t) override { visit_(t); }
-
- private:
-  const std::function<void(const LivingTriangle&)>& visit_;
-};
-
-}  // namespace
 
 TinParts::TinParts(const OpenedTerrain& terrain, PartRequest request)
     : impl_(std::make_unique<Impl>(terrain, std::move(request))) {}
@@ -75,8 +39,10 @@ TinParts::TinParts(TinParts&&) noexcept = default;
 TinParts& TinParts::operator=(TinParts&&) noexcept = default;
 
 Tin* TinParts::part(const GridBox& box) {
-  const bool fits = impl_->living.gather(impl_->place_of(box), impl_->request.limits.memory_bytes,
-                                         impl_->context);
+  LivingPlace place;
+  place.box = box;
+  place.stars = impl_->stars ? &*impl_->stars : nullptr;
+  const bool fits = impl_->living.gather(place, impl_->request.limits.memory_bytes, impl_->context);
   impl_->terrain.store().pages().check_unchanged();
   return fits ? &impl_->living.tin() : nullptr;
 }
@@ -91,12 +57,6 @@ Tin* TinParts::part_for(const GridCell& cell, const GridBox& box) {
                 impl_->terrain.store().path());
   }
   return found;
-}
-
-void TinParts::visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit) {
-  CallingVisitor visitor(visit);
-  impl_->reader.read(impl_->place_of(box), impl_->context, visitor);
-  impl_->terrain.store().pages().check_unchanged();
 }
 
 std::uint64_t TinParts::triangles() const noexcept {

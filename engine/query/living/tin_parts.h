@@ -12,7 +12,6 @@
 #include "engine/geometry/box.h"
 #include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/living/living_triangle.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
@@ -48,9 +47,6 @@ class TinParts {
   /// @throws Error resource_exhausted  the cell is a single position and its part does not fit
   ///               as part()
   [[nodiscard]] Tin* part_for(const GridCell& cell, const GridBox& box);
-
-  /// Hands the same triangles to `visit`, in constant memory but for LivingReader::read().
-  void visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit);
 
   /// Triangles of the whole TIN, about, by the table of errors: at most one bin of errors too many.
   [[nodiscard]] std::uint64_t triangles() const noexcept;

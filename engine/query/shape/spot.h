@@ -3,6 +3,7 @@
 // Spots: positions between grid points, in fixed point. Every decision about a spot is exact.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -61,6 +62,18 @@ struct Spot {
 [[nodiscard]] constexpr bool triangle_holds(GridPoint a, GridPoint b, GridPoint c,
                                             Spot q) noexcept {
   return side(a, b, q) >= 0 && side(b, c, q) >= 0 && side(c, a, q) >= 0;
+}
+
+/// The shares of a and b in a spot of the segment between them, as whole numbers: its distances from
+/// b and from a along the axis along which they are farther apart. Areas give the same shares from
+/// both sides of an edge, but in numbers so large that doubles round them differently.
+[[nodiscard]] constexpr std::array<Int128, 2> edge_weights(GridPoint a, GridPoint b,
+                                                           Spot q) noexcept {
+  const Spot from = spot_of(a);
+  const Spot to = spot_of(b);
+  const auto apart = [](std::int64_t v, std::int64_t w) { return v < w ? w - v : v - w; };
+  if (apart(from.x, to.x) >= apart(from.y, to.y)) return {apart(q.x, to.x), apart(q.x, from.x)};
+  return {apart(q.y, to.y), apart(q.y, from.y)};
 }
 
 /// Twice the signed area of (a, b, c), in units of 2^-44: > 0 where c lies to the left of a -> b.

@@ -182,6 +182,10 @@ Footing footing_of(const Tin& tin, Spot q, const Place& place) {
     }
   }
   sort_by_key(tin, f);
+  if (f.count == 2) {
+    const auto [a, b] = edge_weights(tin.position(f.vertex[0]), tin.position(f.vertex[1]), q);
+    f.weight = {a, b, 0};
+  }
   return f;
 }
 

@@ -16,7 +16,7 @@
 #include "engine/construct/hierarchy/tile_push.h"
 #include "engine/construct/tile/part_surface.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"

@@ -11,7 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/highest.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/polygon_oracle.h"
 #include "tests/query/volume/volume_oracle.h"

@@ -12,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline_tiles.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
