@@ -218,7 +218,7 @@ TEST(Highest, OfAWindowThatIsOnePlaceIsTheHeightThere) {
   const HighestResult got = highest(terrain, request);
   ASSERT_EQ(got.state, PointState::kSurface);
   const MapPoint points[] = {p};
-  EXPECT_NEAR(got.point.height, terrain.locate(points).points[0].height, 1e-9);
+  EXPECT_NEAR(got.point.height, terrain.locate(points, {}).points[0].height, 1e-9);
 }
 
 TEST(Highest, OfAPlaceWithoutInsideIsRefused) {
