@@ -63,9 +63,9 @@ class WindowCounts {
   std::vector<double> above(double error, IoCounters& io) const {
     std::vector<double> counts(bins_.size(), 0.0);
     std::vector<PageId> pages;
-    const PredicatePtr wanted = all_of(
+    const PredicatePtr meeting = all_of(
         {std::make_shared<MeetsBox>(box_around(window_)), std::make_shared<AboveError>(error)});
-    store_.index().search(*wanted, pages, io);
+    store_.index().search(*meeting, pages, io);
     for (const PageId id : pages) {
       const StoreFile::PageInfo page = store_.page_info(id);
       const std::size_t first = bin_of(page.min_error);
