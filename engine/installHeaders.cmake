@@ -59,7 +59,6 @@ set(public_headers
     engine/query/isoline/isoline_progressive.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
-    engine/query/living/grid_cell.h
     engine/query/living/living_stars.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
@@ -85,6 +84,9 @@ set(public_headers
     engine/query/select/region.h
     engine/query/select/retrieval.h
     engine/query/select/total_order.h
+    engine/query/shape/bins_along_y.h
+    engine/query/shape/grid_cell.h
+    engine/query/shape/spot.h
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h
@@ -97,7 +99,6 @@ set(public_headers
     engine/query/volume/plane_area.h
     engine/query/volume/volume.h
     engine/query/walk/point_state.h
-    engine/query/walk/spot.h
     engine/remote/remote_file.h
     engine/stop.h
     storage/attributes.h
@@ -136,6 +137,8 @@ set(program_headers
     engine/construct/scratch/external_sorter.h
     engine/crs/proj_messages.h
     engine/geometry/hilbert.h
+    engine/query/shape/clip.h
+    engine/query/shape/tiler.h
     storage/file/file_questions.h
     storage/file_beginning.h
     storage/index_shape.h

@@ -4,7 +4,6 @@
 // fit in memory, in an order in which the samples of a window lie together.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -17,13 +16,9 @@
 
 namespace ptin::tools {
 
-/// The two halves of a box that is cut across its longer side: the lower (or left) one first.
-/// REQUIRES: the box has two grid points or more.
-[[nodiscard]] std::array<GridBox, 2> halves_of(const GridBox& box);
-
 /// Sorted samples: add() all samples, sort() once, then count() and read(). One thread.
 ///
-/// A key tells where a sample lies: the bounds are halved again and again, as halves_of() does,
+/// A key tells where a sample lies: the bounds are halved again and again, as divided() does,
 /// down to single grid points, 64 times at most. Which half holds the point is one bit of its key
 /// each time. So the samples of a box that comes from halving the bounds are one run of the sorted
 /// ones; the samples of another box are in several runs.

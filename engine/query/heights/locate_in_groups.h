@@ -9,7 +9,7 @@
 #include <span>
 
 #include "engine/query/heights/locate.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 

@@ -47,6 +47,18 @@ Tin* TinParts::part(const GridBox& box) {
   return fits ? &impl_->living.tin() : nullptr;
 }
 
+Tin* TinParts::part_for(const GridCell& cell, const GridBox& box) {
+  Tin* const found = part(box);
+  if (found == nullptr && cell.level == 0) {
+    throw Error(ErrorCode::resource_exhausted,
+                "what meets a single position of the grid takes more memory than the " +
+                    std::to_string(impl_->request.limits.memory_bytes) +
+                    " bytes of a part: give more memory",
+                impl_->terrain.store().path());
+  }
+  return found;
+}
+
 std::uint64_t TinParts::triangles() const noexcept {
   const StoreFile& store = impl_->terrain.store();
   return 2 * (records_above(store, impl_->detail.tolerance()) + store.t0().vertices.size());
@@ -61,27 +73,16 @@ void walk_cells(TinParts& parts,
                 const std::function<void(const GridCell& cell, Tin& part, double done)>& visit) {
   const StoreFile& store = parts.terrain().store();
   const QueryLimits& limits = parts.request().limits;
-  Tin* part = nullptr;
-  const auto fits = [&](const GridCell& cell, double share) {
+  work_on_cells(store.facts().bounds, [&](const GridCell& cell, double share, double done) {
     stop_if_asked(limits.stop, "the walk over the terrain", store.path());
     // A search of the index lists all pages: not worth it for cells that are far too large anyway.
     const auto expected =
         static_cast<std::uint64_t>(static_cast<double>(parts.triangles()) * share);
-    const bool is_hopeless = LivingTin::bytes_for(expected) / 16 > limits.memory_bytes;
-    part = is_hopeless ? nullptr : parts.part(cell.box());
+    const bool is_hopeless =
+        cell.level > 0 && LivingTin::bytes_for(expected) / 16 > limits.memory_bytes;
+    Tin* const part = is_hopeless ? nullptr : parts.part_for(cell, cell.box());
+    if (part != nullptr) visit(cell, *part, done);
     return part != nullptr;
-  };
-  walk_fitting_cells(store.facts().bounds, fits, [&](const GridCell& cell, double done) {
-    if (cell.level == 0) {  // a single position, which is not asked about
-      part = parts.part(cell.box());
-    }
-    if (part == nullptr) {
-      throw Error(ErrorCode::resource_exhausted,
-                  "what meets a single position of the grid takes more memory than the " +
-                      std::to_string(limits.memory_bytes) + " bytes of a part: give more memory",
-                  store.path());
-    }
-    visit(cell, *part, done);
   });
 }
 

@@ -12,10 +12,10 @@
 #include "engine/geometry/box.h"
 #include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/living/grid_cell.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
 
@@ -43,6 +43,10 @@ class TinParts {
   /// @throws Error corruption, io_error, cancelled
   /// Cost: as LivingTin::gather().
   [[nodiscard]] Tin* part(const GridBox& box);
+  /// The part of a box that a cell needs. Null where the cell is to be cut into four.
+  /// @throws Error resource_exhausted  the cell is a single position and its part does not fit
+  ///               as part()
+  [[nodiscard]] Tin* part_for(const GridCell& cell, const GridBox& box);
 
   /// Triangles of the whole TIN, about, by the table of errors: at most one bin of errors too many.
   [[nodiscard]] std::uint64_t triangles() const noexcept;

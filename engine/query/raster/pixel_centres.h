@@ -13,7 +13,7 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/raster/pixel_lattice.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/store_facts.h"
 
 namespace ptin {

@@ -36,8 +36,8 @@ struct PixelRect {
   friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-/// Two halves across the longer side. REQUIRES: more than one pixel.
-[[nodiscard]] constexpr std::array<PixelRect, 2> halves_of(const PixelRect& r) noexcept {
+/// Two halves across the longer side, for work_in_parts(). REQUIRES: more than one pixel.
+[[nodiscard]] constexpr std::array<PixelRect, 2> divided(const PixelRect& r) noexcept {
   PixelRect first = r;
   PixelRect second = r;
   if (r.width >= r.height) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 

@@ -14,6 +14,7 @@
 #include "engine/query/raster/pixel_normals.h"
 #include "engine/query/raster/pixel_sampler.h"
 #include "engine/query/select/opened_terrain.h"
+#include "engine/query/shape/tiler.h"
 
 namespace ptin {
 
@@ -93,9 +94,9 @@ class RasterReading {
     const auto blocks = [](std::int64_t pixels, std::int64_t side) {
       return (pixels - 1) / side + 1;
     };
-    hand_over(
-        {0, 0, blocks(p.width, request_.block_width), blocks(p.height, request_.block_height)},
-        receive);
+    const PixelRect all{0, 0, blocks(p.width, request_.block_width),
+                        blocks(p.height, request_.block_height)};
+    work_in_parts(all, [&](const PixelRect& some) { return hand_over(some, receive); });
   }
 
   void fill(std::span<double> heights, std::span<PointState> states) {
@@ -111,15 +112,15 @@ class RasterReading {
   }
 
  private:
-  void hand_over(const PixelRect& blocks, const RasterReceiver& receive);
-  void emit(const PixelRect& blocks, const PixelRect& sampled, const RasterReceiver& receive);
+  [[nodiscard]] bool hand_over(const PixelRect& blocks, const RasterReceiver& receive);
+  void emit(const PixelRect& one, const PixelRect& sampled, const RasterReceiver& receive);
   [[nodiscard]] PixelRect pixels_of(const PixelRect& blocks) const;
   [[nodiscard]] std::uint64_t bytes_of(const PixelRect& pixels) const;
 
   void sample(const PixelRect& pixels, PixelBuffers<double> buffers);
   [[nodiscard]] bool is_sparse(const PixelCentres& centres) const;
   void locate(const PixelCentres& centres, PixelBuffers<double> buffers);
-  void sample_normals(const PixelRect& part, const PixelRect& sampled);
+  [[nodiscard]] bool sample_normals(const PixelRect& part, const PixelRect& sampled);
   void tell_progress(std::int64_t more_pixels);
   template <class Pixels, class IsSurface>
   void count_surface(const Pixels& pixels, const IsSurface& is_surface) {
@@ -162,13 +163,10 @@ std::uint64_t RasterReading::bytes_of(const PixelRect& pixels) const {
           (request_.normals ? sizeof(GridNormal) : 0));
 }
 
-/// Samples a rectangle of blocks together where the memory holds it, else half by half.
-void RasterReading::hand_over(const PixelRect& blocks, const RasterReceiver& receive) {
+/// Samples a rectangle of blocks together, unless the memory does not hold it.
+bool RasterReading::hand_over(const PixelRect& blocks, const RasterReceiver& receive) {
   const PixelRect pixels = pixels_of(blocks);
-  if (blocks.pixels() > 1 && !context_.fits(2 * bytes_of(pixels))) {
-    for (const PixelRect& half : halves_of(blocks)) hand_over(half, receive);
-    return;
-  }
+  if (blocks.pixels() > 1 && !context_.fits(2 * bytes_of(pixels))) return false;
   context_.admit(bytes_of(pixels));
   const auto count = static_cast<std::size_t>(pixels.pixels());
   if (asks_surface()) {
@@ -178,21 +176,21 @@ void RasterReading::hand_over(const PixelRect& blocks, const RasterReceiver& rec
   }
   if (request_.normals) {
     normals_.assign(count, {});
-    sample_normals(pixels, pixels);
+    work_in_parts(pixels, [&](const PixelRect& part) { return sample_normals(part, pixels); });
     if (!asks_surface()) count_surface(normals_, [](const GridNormal& n) { return n.z > 0; });
   }
-  emit(blocks, pixels, receive);
+  // Blocks come in the order in which halving reaches them, however many are sampled together.
+  work_in_parts(blocks, [&](const PixelRect& some) {
+    if (some.pixels() == 1) emit(some, pixels, receive);
+    return some.pixels() == 1;
+  });
+  return true;
 }
 
-/// Hands over the blocks of a rectangle in the order in which halving reaches them.
-void RasterReading::emit(const PixelRect& blocks, const PixelRect& sampled,
+void RasterReading::emit(const PixelRect& one, const PixelRect& sampled,
                          const RasterReceiver& receive) {
-  if (blocks.pixels() > 1) {
-    for (const PixelRect& half : halves_of(blocks)) emit(half, sampled, receive);
-    return;
-  }
   RasterBlock block;
-  block.pixels = pixels_of(blocks);
+  block.pixels = pixels_of(one);
   block.stride = static_cast<std::size_t>(sampled.width);
   const auto first = static_cast<std::size_t>((block.pixels.row - sampled.row) * sampled.width +
                                               block.pixels.column - sampled.column);
@@ -311,11 +309,10 @@ void RasterReading::locate(const PixelCentres& centres, PixelBuffers<double> buf
   if (!spots.empty()) ask();
 }
 
-/// Sums up the normals of a part of what is sampled: together where the memory holds the triangles,
-/// else half by half.
-void RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampled) {
+/// Sums up the normals of a part of what is sampled, unless the memory does not hold its triangles.
+bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampled) {
   const PixelCentres centres(facts_, request_.lattice, part);
-  if (!meets(centres.box(), facts_.bounds)) return;
+  if (!meets(centres.box(), facts_.bounds)) return true;
   PixelNormals normals(facts_, centres);
   Gathering gathering(*this, normals, context_.left_beside(bytes_of(sampled)));
   LivingPlace place;
@@ -327,12 +324,12 @@ void RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
                   "the pixels: give more memory",
                   context_.file());
     }
-    for (const PixelRect& half : halves_of(part)) sample_normals(half, sampled);
-    return;
+    return false;
   }
   const auto first = static_cast<std::size_t>((part.row - sampled.row) * sampled.width +
                                               part.column - sampled.column);
   normals.sum_up(std::span(normals_).subspan(first), static_cast<std::size_t>(sampled.width));
+  return true;
 }
 
 template <class Read>

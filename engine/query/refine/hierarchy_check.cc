@@ -15,11 +15,11 @@
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/living/grid_cell.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/shape/grid_cell.h"
 #include "engine/stop.h"
 
 namespace ptin {
@@ -140,7 +140,6 @@ void HierarchyCheck::run() {
   const StoreFile& store = terrain_.store();
   const std::uint64_t limit = request_.limits.memory_bytes;
   const auto is_small_enough = [&](const GridCell& cell, double share) {
-    context_.check_stop();
     const std::uint64_t even =
         cell_bytes(static_cast<std::uint64_t>(static_cast<double>(store.record_count()) * share));
     // A search of the index lists all pages: not worth it for cells that are far too large anyway.
@@ -150,9 +149,12 @@ void HierarchyCheck::run() {
     // in each of its parts.
     return bytes <= std::min(limit, kCellBytes) || (bytes <= limit && bytes / 4 > even);
   };
-  walk_fitting_cells(store.facts().bounds, is_small_enough, [&](const GridCell& cell, double done) {
+  work_on_cells(store.facts().bounds, [&](const GridCell& cell, double share, double done) {
+    context_.check_stop();
+    if (cell.level > 0 && !is_small_enough(cell, share)) return false;
     look_into(cell);
     if (request_.progress) request_.progress(done);
+    return true;
   });
   store.pages().check_unchanged();
   if (report_.is_sound() && report_.records != store.record_count()) {

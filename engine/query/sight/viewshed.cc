@@ -13,8 +13,8 @@
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/shape/spot.h"
 #include "engine/query/sight/viewshed_sweep.h"
-#include "engine/query/walk/spot.h"
 
 namespace ptin {
 

@@ -19,7 +19,7 @@ namespace ptin {
 /// What a viewshed is asked with. Lengths on the ground are in the height's unit; the ground
 /// factors turn map units into it.
 struct ViewshedRequest {
-  MapPoint eye;           ///< Map units; taken to the nearest spot (walk/spot.h).
+  MapPoint eye;           ///< Map units; taken to the nearest spot (shape/spot.h).
   double eye_height = 0;  ///< Above the surface; absolute when `absolute` is set.
   bool absolute = false;
   double target_height = 0;     ///< Height of targets above the surface; >= 0.

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/attributes.h"
 
 namespace ptin {

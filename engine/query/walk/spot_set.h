@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/attributes.h"
 
 namespace ptin {

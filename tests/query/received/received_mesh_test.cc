@@ -16,7 +16,7 @@
 
 #include "engine/error.h"
 #include "engine/query/questions.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
 
