@@ -10,6 +10,7 @@
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_shares.h"
 #include "engine/construct/scratch/external_memory.h"
+#include "engine/construct/scratch/external_sorter.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "storage/file/checksum.h"
@@ -101,11 +102,11 @@ class BucketWriter {
   std::optional<MergedHeight> merged_;
 };
 
-template <class Sorter, class Record>
+template <class Record>
 RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const PointFiles& files,
                    const Task& task) {
   const ExternalMemory memory{files.files, files.folder, std::max(task.bytes, plan.least_memory)};
-  Sorter sorter(memory, "points", task.stop);
+  ExternalSorter<Record> sorter(memory, "points", task.stop);
   sorter.expect(records.records());
   const auto report = [&](std::uint64_t done) {
     stop_if_asked(task.stop, "sorting the points");
@@ -137,9 +138,8 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
 ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts>& shares,
                           const PointFiles& files, const Task& task) {
   const RangeOfShares records(files, shares, number_of(task.name));
-  const RangeIndex index =
-      plan.is_numbered() ? sort_as<NumberedPointSorter, NumberedHeight>(plan, records, files, task)
-                         : sort_as<PointSorter, KeyedHeight>(plan, records, files, task);
+  const RangeIndex index = plan.is_numbered() ? sort_as<NumberedHeight>(plan, records, files, task)
+                                              : sort_as<KeyedHeight>(plan, records, files, task);
   ArrayFileWriter file(files.files, files.path("range", number_of(task.name)));
   const PlainIndex plain{index.points, index.largest_shift_height, index.heights.known()};
   file.put(std::span(&plain, 1));

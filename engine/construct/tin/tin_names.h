@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -83,12 +84,14 @@ struct NamedVertex {
   [[nodiscard]] SourcePoint point() const noexcept {
     return {{mantissa[0], decimals[0]}, {mantissa[1], decimals[1]}, {mantissa[2], decimals[2]}};
   }
+  friend bool operator<(const NamedVertex& a, const NamedVertex& b) noexcept { return a.id < b.id; }
 };
 
 /// A corner of a face, which names its vertex.
 struct NamedCorner {
   std::int64_t id = 0;      ///< Of the vertex.
   std::uint64_t place = 0;  ///< 4 f + c for corner c (0 to 3) of face f of the file.
+  friend auto operator<=>(const NamedCorner&, const NamedCorner&) = default;
 };
 
 /// A file's terrain: triangles and quads whose corners all have a height, and the vertices that they

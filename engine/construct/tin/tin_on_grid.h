@@ -41,6 +41,8 @@ struct GridTriangle {
   std::array<GridVertex, 3> corners;  ///< In turn, from the one with the smallest key on.
 
   [[nodiscard]] std::int64_t area() const noexcept;  ///< orient() of its corners: twice the area.
+  /// Along the curve: by the place of the first corner, then by the keys of the second and the third.
+  friend bool operator<(const GridTriangle& a, const GridTriangle& b) noexcept;
 };
 
 class PointOrder;
@@ -48,13 +50,6 @@ class PointOrder;
 /// Makes a triangle of three corners; keeps which way round they go.
 [[nodiscard]] GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
                                          const PointOrder& order) noexcept;
-
-/// The order of triangles along the curve: by the place of the first corner, then by the keys of
-/// the second and the third.
-struct ByPlace {
-  bool operator()(const GridTriangle& a, const GridTriangle& b) const noexcept;
-};
-using TriangleSorter = ExternalSorter<GridTriangle, ByPlace>;
 
 /// Triangles that are wrong by themselves.
 struct OrientationFaults {
@@ -73,7 +68,7 @@ struct TinOnGrid {
   SourceWarnings warnings;
   HeightFit heights;
   /// Counter-clockwise, those that are clockwise in the file turned; but for slivers.
-  std::unique_ptr<TriangleSorter> triangles;
+  std::unique_ptr<ExternalSorter<GridTriangle>> triangles;
   /// Distinct positions of the vertices of triangles, along the curve.
   std::unique_ptr<RecordFile<std::uint64_t>> places;
   std::uint64_t turned_triangles = 0;  ///< Those that went round unlike most.

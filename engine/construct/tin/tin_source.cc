@@ -159,7 +159,7 @@ class HullFiller {
   const std::stop_token& stop_;
   const PointOrder& order_;
   RecordFile<GridEdge> border_;
-  TriangleSorter voids_;
+  ExternalSorter<GridTriangle> voids_;
   HullCollector hull_;
 };
 
