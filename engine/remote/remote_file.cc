@@ -45,10 +45,6 @@ RemoteOptions configured(RemoteOptions options) {
   return options;
 }
 
-struct Free {
-  void operator()(char* text) const noexcept { CPLFree(text); }
-};
-
 /// The URL of an object in a store, signed by GDAL with the credentials that it finds; empty: it
 /// cannot. It is taken again before it ages, since it is good for an hour.
 class SignedUrl {
@@ -62,7 +58,7 @@ class SignedUrl {
       CPLStringList options;
       options.SetNameValue("EXPIRATION_DELAY", "3600");
       options.SetNameValue("VERB", "GET");
-      const std::unique_ptr<char, Free> url(VSIGetSignedURL(path_.c_str(), options.List()));
+      const CPLCharUniquePtr url(VSIGetSignedURL(path_.c_str(), options.List()));
       url_ = url ? url.get() : "";
       taken_ = now;
     }
