@@ -128,7 +128,6 @@ set(public_headers
     storage/index_shape.h
     storage/layout.h
     storage/packed_segment.h
-    storage/page_journal.h
     storage/page_store.h
     storage/record.h
     storage/spatialindex_rtree.h

@@ -25,7 +25,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 9;
+constexpr int kTemporaryFormat = 10;
 
 /// The key of a line of the manifest: the sorted source that an earlier line names is damaged.
 constexpr const char* kIsForgotten = "source_is_damaged";
