@@ -41,7 +41,7 @@ class ShareWriter {
     }
     file_.close();
     counts.records = records_;
-    facts.put(std::span<const ShareCounts>(&counts, 1));
+    facts.values(counts);
     for (const std::vector<ShareBlock>& blocks : blocks_) {
       facts.put(blocks);
     }
@@ -165,7 +165,9 @@ ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files, const Ta
 ShareCounts counts_of_share(const PointFiles& files, std::size_t share,
                             const ArrayFileFacts& facts) {
   ArrayFileReader file = files.open(files.path("shared", share), facts);
-  return file.take_copy<ShareCounts>()[0];
+  ShareCounts counts;
+  file.values(counts);
+  return counts;
 }
 
 RangeOfShares::RangeOfShares(const PointFiles& files, const std::vector<ArrayFileFacts>& shares,

@@ -19,12 +19,6 @@ namespace ptin {
 
 namespace {
 
-struct PlainIndex {
-  std::uint64_t points;
-  double largest_shift_height;
-  HeightFinder::Known heights;
-};
-
 /// Merges points that come in the order of the curve, and writes them in buckets.
 class BucketWriter {
  public:
@@ -133,6 +127,13 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
   return writer.finish();
 }
 
+/// What is kept of an index; `heights` is what its finder knows.
+template <class File, class Index, class Heights>
+void serialize_index(File& file, Index& index, Heights&& heights) {
+  file.values(index.points, index.largest_shift_height, heights, index.hull, index.boxes,
+              index.ends, index.checksums);
+}
+
 }  // namespace
 
 ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts>& shares,
@@ -141,24 +142,16 @@ ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts
   const RangeIndex index = plan.is_numbered() ? sort_as<NumberedHeight>(plan, records, files, task)
                                               : sort_as<KeyedHeight>(plan, records, files, task);
   ArrayFileWriter file(files.files, files.path("range", number_of(task.name)));
-  const PlainIndex plain{index.points, index.largest_shift_height, index.heights.known()};
-  file.put(std::span(&plain, 1));
-  file.put(index.hull);
-  file.put(index.boxes);
-  file.put(index.ends);
-  file.put(index.checksums);
+  serialize_index(file, index, index.heights.known());
   return file.finish();
 }
 
 RangeIndex index_of_range(const PointFiles& files, std::size_t range, const ArrayFileFacts& facts) {
   ArrayFileReader file = files.open(files.path("range", range), facts);
-  const PlainIndex plain = file.take_copy<PlainIndex>()[0];
-  RangeIndex index{
-      plain.points, plain.largest_shift_height, HeightFinder(plain.heights), {}, {}, {}, {}};
-  index.hull = file.take_copy<GridPoint>();
-  index.boxes = file.take_copy<GridBox>();
-  index.ends = file.take_copy<std::uint64_t>();
-  index.checksums = file.take_copy<std::uint64_t>();
+  HeightFinder::Known heights{};
+  RangeIndex index{0, 0.0, HeightFinder(heights), {}, {}, {}, {}};
+  serialize_index(file, index, heights);
+  index.heights = HeightFinder(heights);
   return index;
 }
 

@@ -174,8 +174,7 @@ std::unique_ptr<TaskWorker> RasterSource::open_to_scan(const std::vector<std::st
 
 ArrayFileFacts RasterSource::save(FileLayer& files, const std::string& index) const {
   ArrayFileWriter file(files, index);
-  put_frame(file, impl_->frame);
-  file.put(std::span<const std::uint64_t>(&impl_->valid_samples, 1));
+  file.values(impl_->frame, impl_->valid_samples);
   file.sync();
   return file.finish();
 }
@@ -185,9 +184,7 @@ RasterSource RasterSource::take_up(const std::vector<std::string>& paths,
                                    const ArrayFileFacts& facts) {
   auto impl = Impl::opened(paths, options);
   ArrayFileReader file(index, facts);
-  impl->frame = take_frame(file);
-  impl->valid_samples = file.take<std::uint64_t>()[0];
-  file.require_undamaged();
+  file.values(impl->frame, impl->valid_samples);
   return RasterSource(std::move(impl));
 }
 

@@ -22,10 +22,11 @@ struct PreparedSegment : PackedSegment {
   std::uint64_t void_records = 0;  ///< That make a void triangle or vertex; those left out too.
 };
 
-/// Writes all of a segment but its pages; and takes that back.
-void write_description(ArrayFileWriter& file, const PreparedSegment& segment);
-/// @throws Error corruption  the file is not what was written
-[[nodiscard]] PreparedSegment read_description(ArrayFileReader& file);
+/// All of a segment but its pages.
+template <class File, MaybeConst<PreparedSegment> Segment>
+void serialize(File& file, Segment& s) {
+  file.values(s.descriptors, s.errors, s.max_rank, s.left_out, s.void_records);
+}
 
 /// The part of an output that workers do: any number of threads at once, in any process that sees
 /// the output's folder.

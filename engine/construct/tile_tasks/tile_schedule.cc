@@ -218,7 +218,7 @@ void TileSchedule::add_segments(const TileId& tile) {
   std::vector<PreparedSegment> segments;  // all are sound before the first is added
   read_input(log_.workspace().temporary_folder(), input, [&](ArrayFileReader& file) {
     while (!file.at_end()) {
-      segments.push_back(read_description(file));
+      file.values(segments.emplace_back());
     }
   });
   for (const PreparedSegment& segment : segments) {

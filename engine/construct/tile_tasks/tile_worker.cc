@@ -40,7 +40,7 @@ class SegmentFiles {
     const PreparedSegment segment = packer_.prepare(records);
     page_bytes_ += segment.pages.size();
     pages_.put(segment.pages);
-    write_description(descriptions_, segment);
+    descriptions_.values(segment);
   }
   [[nodiscard]] ArrayFileWriter& pages() noexcept { return pages_; }
   [[nodiscard]] ArrayFileWriter& descriptions() noexcept { return descriptions_; }
