@@ -209,16 +209,14 @@ RasterSource RasterSource::duplicate() const {
 // ---------------------------------------------------------------------------------------------------
 // Reading windows.
 
-void RasterSource::read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::int64_t h,
-                        std::span<HeightBits> heights, std::span<std::uint8_t> valid) const {
-  const bool inside =
-      x0 >= 0 && y0 >= 0 && w > 0 && h > 0 && x0 <= width() - w && y0 <= height() - h;
-  if (!inside || heights.size() != static_cast<std::size_t>(w * h) ||
-      valid.size() != heights.size()) {
+void RasterSource::read(const SampleRange& window, std::span<HeightBits> heights,
+                        std::span<std::uint8_t> valid) const {
+  const bool inside = window.x0 >= 0 && window.y0 >= 0 && window.width > 0 && window.height > 0 &&
+                      window.x0 <= width() - window.width && window.y0 <= height() - window.height;
+  if (!inside || heights.size() != window.samples() || valid.size() != heights.size()) {
     throw Error(ErrorCode::invalid_argument,
                 "a window of samples must lie inside the terrain, and its arrays be of its size");
   }
-  const SampleRange window{x0, y0, w, h};
   const std::lock_guard lock(impl_->mutex);
   const auto read_as = [&]<class T>(std::span<T> raw, auto to_bits) {
     impl_->mosaic.read<T>(window, raw, valid);

@@ -14,6 +14,7 @@
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/tasks/task_driver.h"
+#include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
 
@@ -80,16 +81,15 @@ class RasterSource {
   /// Warnings of what the files declare and open() found.
   [[nodiscard]] const SourceWarnings& warnings() const noexcept;
 
-  /// Reads the window of `w` x `h` samples whose south-western one is (x0, y0): row-major, row 0 in
-  /// the south. `heights` is 0 where `valid` is 0. REQUIRES: the window lies inside the terrain;
-  /// the spans hold w * h.
+  /// Reads a window of samples: row-major, row 0 in the south. `heights` is 0 where `valid` is 0.
+  /// REQUIRES: the window lies inside the terrain; the spans hold window.samples().
   /// @throws Error  invalid_argument  the window or a span is not as required
   ///                io_error          a block cannot be read, or the file changed since open()
   /// Cost: linear in the window, and decoding those blocks under it that GDAL's cache does not
   /// hold. Memory beside the spans: none for one file of integers; one value of 4 or 8 bytes a
   /// sample for other types; for a mosaic besides the values of one file at a time.
-  void read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::int64_t h,
-            std::span<HeightBits> heights, std::span<std::uint8_t> valid) const;
+  void read(const SampleRange& window, std::span<HeightBits> heights,
+            std::span<std::uint8_t> valid) const;
 
  private:
   struct Impl;

@@ -165,8 +165,7 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   const auto n = static_cast<std::size_t>(samples.range.samples());
   samples.heights.resize(n);
   samples.valid.resize(n);
-  source.read(samples.range.x0, samples.range.y0, samples.range.width, samples.range.height,
-              samples.heights, samples.valid);
+  source.read(samples.range, samples.heights, samples.valid);
   if (samples.has_voids) {
     samples.step = largest_step(GroundMetric(source.frame()), box_of_window(samples.range));
   }
