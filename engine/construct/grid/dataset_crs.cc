@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/grid/dataset_crs.h"
 
-#include <cstdlib>
-
 #include <cpl_string.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -92,9 +90,10 @@ std::string height_unit_of_prj(GDALDataset& data) {
 void warn_of_shift(const std::string& text, const std::string& path, SourceWarnings& warnings) {
   const std::size_t name = CPLString(text).ifind("\"Vertical_Shift\"");
   const std::size_t comma = name == std::string::npos ? name : text.find(',', name);
-  const double shift = comma == std::string::npos ? 0.0 : std::strtod(&text[comma + 1], nullptr);
-  if (shift != 0.0) {
-    const std::string number = text.substr(comma + 1, text.find(']', comma) - comma - 1);
+  const std::size_t begin = text.find_first_not_of(", ", comma);
+  const std::string number =
+      begin == std::string::npos ? "" : text.substr(begin, text.find(']', begin) - begin);
+  if (parse_number<double>(number).value_or(0.0) != 0.0) {
     warnings.add({"crs_vertical_shift",
                   "its vertical CRS shifts heights by " + number +
                       " (Vertical_Shift), which is not applied: heights are taken as they are, in "
