@@ -98,10 +98,10 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
 template <class Add>
 void add_fixed_vertices(const SortPlan& plan, std::uint64_t share, const Add& add) {
   const PointOrder order = plan.order();
-  const std::span<const LineVertex> all = plan.fixed.vertices();
+  const std::span<const GridVertex> all = plan.fixed.vertices();
   const std::size_t begin = all.size() * share / plan.shares;
   const std::size_t end = all.size() * (share + 1) / plan.shares;
-  for (const LineVertex& v : all.subspan(begin, end - begin)) {
+  for (const GridVertex& v : all.subspan(begin, end - begin)) {
     add(order.key(v.position), v.height);
   }
 }

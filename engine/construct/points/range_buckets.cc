@@ -72,7 +72,7 @@ class BucketWriter {
       return;
     }
     GridBox box;
-    for (const PlacedHeight& p : bucket_) {
+    for (const GridVertex& p : bucket_) {
       box = united(box, p.position);
     }
     pack_bucket(bucket_, box, packed_);
@@ -90,7 +90,7 @@ class BucketWriter {
   ScratchFile file_;
   RangeIndex index_;
   HullCollector hull_;
-  std::vector<PlacedHeight> bucket_;
+  std::vector<GridVertex> bucket_;
   std::vector<std::byte> packed_;
   std::uint64_t key_ = 0;
   std::optional<MergedHeight> merged_;

@@ -21,7 +21,7 @@ namespace ptin {
 /// of all points would be.
 struct RangeIndex {
   std::uint64_t points = 0;           ///< Distinct positions.
-  double largest_shift_height = 0.0;  ///< As PlacedHeight has heights.
+  double largest_shift_height = 0.0;  ///< As GridVertex has heights.
   HeightFinder heights;
   std::vector<GridPoint> hull;           ///< Its corners.
   std::vector<GridBox> boxes;            ///< Of the buckets.

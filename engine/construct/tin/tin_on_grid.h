@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/grid_vertex.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
@@ -24,12 +25,6 @@
 #include "engine/geometry/point.h"
 
 namespace ptin {
-
-/// A vertex on the grid. Its height is as PointGrid::height() has it.
-struct GridVertex {
-  GridPoint position;
-  double height = 0.0;
-};
 
 /// The index of the vertex with this key among vertices in the order of their keys.
 /// REQUIRES: there is such a vertex. Cost: O(log n).
