@@ -33,6 +33,7 @@ class SegmentFiles {
  public:
   SegmentFiles(const TaskSetup& setup, const TileId& tile)
       : packer_(setup.packer),
+        syncs_(setup.syncs),
         pages_(setup.files, path_of(setup, tile, TileFile::kPages)),
         descriptions_(setup.files, path_of(setup, tile, TileFile::kDescriptions)) {}
 
@@ -42,12 +43,21 @@ class SegmentFiles {
     pages_.put(segment.pages);
     descriptions_.values(segment);
   }
-  [[nodiscard]] ArrayFileWriter& pages() noexcept { return pages_; }
-  [[nodiscard]] ArrayFileWriter& descriptions() noexcept { return descriptions_; }
-  [[nodiscard]] std::uint64_t page_bytes() const noexcept { return page_bytes_; }
+  /// Tells in `result` what was written.
+  void finish(TaskResult& result) {
+    for (const auto& [file, kind] : {std::pair(&pages_, TileFile::kPages),
+                                     std::pair(&descriptions_, TileFile::kDescriptions)}) {
+      if (syncs_) {
+        file->sync();
+      }
+      result.facts(kind) = file->finish();
+    }
+    result.page_bytes = page_bytes_;
+  }
 
  private:
   const SegmentPacker& packer_;
+  bool syncs_;
   ArrayFileWriter pages_, descriptions_;
   std::uint64_t page_bytes_ = 0;
 };
@@ -170,9 +180,7 @@ TaskResult TileWorker::collapse(const Task& task) {
     segments.add(group.records);
     write_pushed_of(top, group.pushed, result);
   }
-  finish(segments.pages(), result.facts(TileFile::kPages));
-  finish(segments.descriptions(), result.facts(TileFile::kDescriptions));
-  result.page_bytes = segments.page_bytes();
+  segments.finish(result);
   return result;
 }
 
@@ -264,9 +272,7 @@ TaskResult TileWorker::close(const Task& task) {
   use_input(task.inputs.front(), [&] { segment->require_undamaged(); });
   SegmentFiles packed(setup_, id);
   packed.add(records);
-  finish(packed.pages(), result.facts(TileFile::kPages));
-  finish(packed.descriptions(), result.facts(TileFile::kDescriptions));
-  result.page_bytes = packed.page_bytes();
+  packed.finish(result);
   return result;
 }
 
