@@ -76,7 +76,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   if (result.source.crs.empty() || (!is_layer && portion.part.begin == 0)) {
     take_crs_beside(path, result.source.crs, of_crs);
   }
-  SpoolWriter writer(files_.files, files_.path("spool", number), number);
+  SpoolWriter writer(files_.files, files_.path("spool", number));
   EvenSample sample;
   std::vector<SourcePoint> batch;
   while (stream->next(batch)) {
@@ -96,7 +96,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.rows = stream->rows();
   result.warnings = stream->warnings();
   result.warnings.join(of_crs);
-  writer.finish();
+  result.spool = writer.finish();
   result.samples = sample.points();
   result.sample_step = sample.step();
   return result;
@@ -225,7 +225,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     reading.left_out.join(read.left_out);
     reading.warnings.join(warnings_that_count(read.warnings, options, lines_before));
     if (read.extent.points > 0) {
-      reading.spools.push_back({p.number, read.extent.points});
+      reading.spools.push_back({p.number, read.extent.points, read.spool});
     }
     add_samples(read, sample_step, reading);
   }

@@ -55,12 +55,13 @@ struct PortionRead {
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
+  ArrayFileFacts spool;  ///< Of the file of its points.
 };
 template <class File, MaybeConst<PortionRead> Read>
 void serialize(File& file, Read& r) {
   file.values(r.source.crs, r.source.vertical_crs, r.source.units.plane, r.source.units.heights,
               r.source.plan_decimals, r.source.height_decimals, r.source.lattice, r.extent,
-              r.left_out, r.rows, r.warnings, r.samples, r.sample_step);
+              r.left_out, r.rows, r.warnings, r.samples, r.sample_step, r.spool);
 }
 
 /// The portions of one stage of reading.
@@ -118,6 +119,7 @@ struct PointReading {
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;
+    ArrayFileFacts facts;
   };
   std::vector<Spool> spools{};  ///< In the order of the source; none is empty.
   struct Sample {

@@ -68,7 +68,7 @@ class ShareWriter {
   std::uint64_t offset_ = 0, records_ = 0;
 };
 
-/// Calls visit(reader, block, number of the block's first point) for the blocks of a share.
+/// Calls visit(points, number of the first of them) for the blocks of a share.
 template <class Visit>
 void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t share,
                   const Visit& visit) {
@@ -78,14 +78,17 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
   }
   const std::uint64_t begin = all * share / plan.shares, end = all * (share + 1) / plan.shares;
   std::uint64_t first_block = 0, first_point = 0;
+  std::vector<SourcePoint> points;
   for (const PointReading::Spool& spool : plan.spools) {
     const std::uint64_t blocks = spool_blocks(spool.points);
     const std::uint64_t from = std::max(begin, first_block);
     const std::uint64_t to = std::min(end, first_block + blocks);
     if (from < to) {
-      SpoolReader reader(files, spool.number, spool.points);
+      ArrayFileReader file = files.open(files.path("spool", spool.number), spool.facts);
+      skip_blocks(file, from - first_block);
       for (std::uint64_t block = from - first_block; block < to - first_block; ++block) {
-        visit(reader, block, first_point + block * kSpoolBlock);
+        read_block(file, points);
+        visit(points, first_point + block * kSpoolBlock);
       }
     }
     first_block += blocks;
@@ -120,12 +123,10 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
   const PointOrder order = plan.order();
   ShareWriter<Record> writer(plan, files, number_of(task.name));
   ShareCounts counts;
-  std::vector<SourcePoint> points;
   std::uint64_t done = 0;
   visit_blocks(plan, files, number_of(task.name),
-               [&](SpoolReader& reader, std::uint64_t block, std::uint64_t number) {
+               [&](const std::vector<SourcePoint>& points, std::uint64_t number) {
                  stop_if_asked(task.stop, "sorting the points");
-                 reader.read(block, points);
                  for (const SourcePoint& p : points) {
                    const GridPoint position = plan.grid.position(p);
                    counts.largest_shift_plan =
