@@ -127,13 +127,6 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
   return writer.finish();
 }
 
-/// What is kept of an index; `heights` is what its finder knows.
-template <class File, class Index, class Heights>
-void serialize_index(File& file, Index& index, Heights&& heights) {
-  file.values(index.points, index.largest_shift_height, heights, index.hull, index.boxes,
-              index.ends, index.checksums);
-}
-
 }  // namespace
 
 ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts>& shares,
@@ -142,16 +135,14 @@ ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts
   const RangeIndex index = plan.is_numbered() ? sort_as<NumberedHeight>(plan, records, files, task)
                                               : sort_as<KeyedHeight>(plan, records, files, task);
   ArrayFileWriter file(files.files, files.path("range", number_of(task.name)));
-  serialize_index(file, index, index.heights.known());
+  file.values(index);
   return file.finish();
 }
 
 RangeIndex index_of_range(const PointFiles& files, std::size_t range, const ArrayFileFacts& facts) {
   ArrayFileReader file = files.open(files.path("range", range), facts);
-  HeightFinder::Known heights{};
-  RangeIndex index{0, 0.0, HeightFinder(heights), {}, {}, {}, {}};
-  serialize_index(file, index, heights);
-  index.heights = HeightFinder(heights);
+  RangeIndex index{0, 0.0, HeightFinder(false, 0.0), {}, {}, {}, {}};
+  file.values(index);
   return index;
 }
 

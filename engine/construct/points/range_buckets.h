@@ -29,6 +29,11 @@ struct RangeIndex {
   std::vector<std::uint64_t> checksums;  ///< Of the buckets.
 };
 
+template <class File, MaybeConst<RangeIndex> Index>
+void serialize(File& file, Index& i) {
+  file.values(i.points, i.largest_shift_height, i.heights, i.hull, i.boxes, i.ends, i.checksums);
+}
+
 /// Sorts the range of the task's number of what was shared out, and writes its buckets to
 /// plan.buckets_of(), and
 /// their index to a file of its own.
