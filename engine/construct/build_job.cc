@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 
 #include "engine/construct/build_option_table.h"
-#include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/points/point_portions.h"
@@ -249,7 +248,8 @@ void plan_before_reading(const Job& job,
   SourceDisk disk = disk_of(count);
   disk.is_estimate = true;
   disk.may_be_less = count.may_be_less;
-  job.tell(plan_build(expected_point_tree(count.points, job.options.tile), job.plan_request(disk)));
+  job.tell(plan_build(TileTree::over_points(count.points, job.options.tile, nullptr),
+                      job.plan_request(disk)));
 }
 
 void in_workspace(Job& job, const nlohmann::json& fingerprint,

@@ -30,7 +30,8 @@ TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
 TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
                   const std::stop_token& stop) {
   const MeasureUnits units = measure_units(points.frame(), options.void_slope);
-  const auto tree = std::make_shared<const TileTree>(point_tree(points, options.tile));
+  const auto tree = std::make_shared<const TileTree>(TileTree::over_points(
+      points.size(), options.tile, std::make_shared<const ConvexHull>(points.hull())));
   const auto make_starter = [&points, tree, units, longest = options.max_edge,
                              stop]() -> LeafStarter {
     const auto starter = std::make_shared<PointTileStarter>(points, *tree, units, longest, stop);
@@ -41,7 +42,9 @@ TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
 
 TiledSource tiled(const TinTriangles& triangles, const BuildOptions& options) {
   const MeasureUnits units = measure_units(triangles.frame(), options.void_slope);
-  const auto tree = std::make_shared<const TileTree>(tin_tree(triangles, options.tile));
+  const auto tree = std::make_shared<const TileTree>(
+      TileTree::over_points(triangles.counts().vertices, options.tile,
+                            std::make_shared<const ConvexHull>(triangles.hull())));
   const auto make_starter = [&triangles, tree, units]() -> LeafStarter {
     return [&triangles, tree, units](const SampleRange& window) {
       return start_tin_tile(triangles, *tree, window, units);
