@@ -81,20 +81,11 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
       stop);
   require_fit(around, memory, path);
   Patch patch;
-  for (const GridTriangle& t : found) {
-    patch.vertices.insert(patch.vertices.end(), t.corners.begin(), t.corners.end());
-  }
-  const auto key = [](const GridVertex& v) { return key_of(v.position); };
-  std::sort(patch.vertices.begin(), patch.vertices.end(),
-            [&](const GridVertex& a, const GridVertex& b) { return key(a) < key(b); });
-  patch.vertices.erase(
-      std::unique(patch.vertices.begin(), patch.vertices.end(),
-                  [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
-      patch.vertices.end());
+  patch.vertices = vertices_of(found);
   patch.vertices.shrink_to_fit();
   for (const GridVertex& v : patch.vertices) {
     patch.positions.push_back(v.position);
-    patch.is_complete.push_back(wanted.contains(key(v)) ? 1 : 0);
+    patch.is_complete.push_back(wanted.contains(key_of(v.position)) ? 1 : 0);
   }
   for (const GridTriangle& t : found) {
     patch.triangles.push_back(patch.numbers(t));

@@ -157,14 +157,7 @@ void NameReader::leave_out_triangles() {
       reading_.stop);
   end_face();
   tin_.corners = RecordFile<NamedCorner>(memory_, "corners");
-  kept.merge(
-      [&](std::span<const NamedCorner> batch) {
-        for (const NamedCorner& c : batch) {
-          tin_.corners.add(c);
-        }
-      },
-      reading_.stop);
-  tin_.corners.finish();
+  write_in_order(kept, tin_.corners, reading_.stop);
 }
 
 /// Drops the vertices that only triangles without a height named.

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -67,6 +68,20 @@ template <class Record>
         file.take(next, count, batch);
         next += count;
       });
+}
+
+/// Adds the records of a sorter to a file, in ascending order, and finishes it.
+template <class Record, class Before>
+void write_in_order(ExternalSorter<Record, Before>& sorter, RecordFile<Record>& to,
+                    const std::stop_token& stop) {
+  sorter.merge(
+      [&](std::span<const Record> batch) {
+        for (const Record& record : batch) {
+          to.add(record);
+        }
+      },
+      stop);
+  to.finish();
 }
 
 /// A vertex as the file has it, in 40 bytes.

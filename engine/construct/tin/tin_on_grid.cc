@@ -321,6 +321,22 @@ bool operator<(const GridTriangle& a, const GridTriangle& b) noexcept {
                                   : key(a, 2) < key(b, 2);
 }
 
+std::vector<GridVertex> vertices_of(std::span<const GridTriangle> triangles) {
+  std::vector<GridVertex> vertices;
+  vertices.reserve(3 * triangles.size());
+  for (const GridTriangle& t : triangles) {
+    vertices.insert(vertices.end(), t.corners.begin(), t.corners.end());
+  }
+  const auto key = [](const GridVertex& v) { return key_of(v.position); };
+  std::sort(vertices.begin(), vertices.end(),
+            [&](const GridVertex& a, const GridVertex& b) { return key(a) < key(b); });
+  vertices.erase(
+      std::unique(vertices.begin(), vertices.end(),
+                  [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
+      vertices.end());
+  return vertices;
+}
+
 TinOnGrid read_on_grid(const std::string& path, const TinGridReading& reading) {
   return GridReader(path, reading).read();
 }

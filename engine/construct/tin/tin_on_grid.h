@@ -46,6 +46,9 @@ class PointOrder;
 [[nodiscard]] GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
                                          const PointOrder& order) noexcept;
 
+/// The vertices of triangles, each once, in the order of their keys. Cost: O(n log n).
+[[nodiscard]] std::vector<GridVertex> vertices_of(std::span<const GridTriangle> triangles);
+
 /// Triangles that are wrong by themselves.
 struct OrientationFaults {
   TinFault no_area;
