@@ -14,6 +14,7 @@
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 #include "engine/construct/tile_tasks/tile_worker.h"
 #include "engine/construct/tiled_source.h"
 #include "engine/error.h"
@@ -133,6 +134,11 @@ BuildWorker::~BuildWorker() = default;
 
 TaskWorker& BuildWorker::tasks() noexcept { return *impl_->worker; }
 const TileTree& BuildWorker::tree() const noexcept { return impl_->tiles->tree; }
+
+TaskMemory BuildWorker::memory(int threads) const {
+  const MemoryPlan& all = impl_->memory;
+  return {tile_bytes_of(all.kind), all.for_tiles(anonymous_bytes_now(), threads), all.gdal_cache};
+}
 
 std::string BuildWorker::answer(const std::string& message) {
   try {
