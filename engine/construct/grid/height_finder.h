@@ -20,7 +20,7 @@ class HeightFinder {
   /// @param whole  True where add() receives codes: heights in whole steps of `step`. False where
   ///               it receives heights in their own unit.
   /// @param step   The height of one code, in the height's unit; unused unless `whole`.
-  HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
+  constexpr HeightFinder(bool whole, double step) noexcept : whole_(whole), step_(step) {}
 
   void add(double height) {
     if (whole_) {
