@@ -23,24 +23,6 @@ namespace {
 /// So many samples are joined at most: all portions together have no more memory than few have.
 constexpr std::size_t kMostSamples = std::size_t{1} << 18;
 
-/// Tells how much of a portion is done, in its bytes.
-class PortionProgress {
- public:
-  PortionProgress(const PointPortion& portion, const Task& task)
-      : bytes_(portion.bytes), task_(task) {}
-  void operator()(std::uint64_t done, std::uint64_t total) const {
-    if (task_.progress) {
-      const double share =
-          total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
-      task_.progress(static_cast<std::uint64_t>(share * static_cast<double>(bytes_)));
-    }
-  }
-
- private:
-  std::uint64_t bytes_;
-  const Task& task_;
-};
-
 }  // namespace
 
 void EvenSample::add(const SourcePoint& p) {
@@ -64,7 +46,10 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   if (point_format_of(path, options_.points) == PointFormat::kTin) {
     alone.lock();
   }
-  const PortionProgress progress(portion, task);
+  const auto progress = [&](std::uint64_t done, std::uint64_t total) {  // told in bytes
+    const double share = total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
+    task.tell(static_cast<std::uint64_t>(share * static_cast<double>(portion.bytes)));
+  };
   const ExternalMemory memory{files_.files, files_.folder, task.bytes};
   const auto stream = open_point_stream(path, options_.points, options_.nodata,
                                         {&memory, task.stop, progress}, portion.part);

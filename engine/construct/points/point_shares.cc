@@ -144,9 +144,7 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
                    writer.add(record_of<Record>(order.key(position), plan.grid.height(p.z), n));
                  }
                  done += points.size();
-                 if (task.progress) {
-                   task.progress(done);
-                 }
+                 task.tell(done);
                });
   add_fixed_vertices(plan, number_of(task.name), [&](std::uint64_t key, double height) {
     writer.add(record_of<Record>(key, height, 0));

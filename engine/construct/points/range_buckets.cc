@@ -104,9 +104,7 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
   sorter.expect(records.records());
   const auto report = [&](std::uint64_t done) {
     stop_if_asked(task.stop, "sorting the points");
-    if (task.progress) {
-      task.progress(done / 2);
-    }
+    task.tell(done / 2);
   };
   records.read<Record>([&](std::span<const Record> some) {
     for (const Record& r : some) {

@@ -112,9 +112,7 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const Task& task) const
             });
       }
       done += n;
-      if (task.progress) {
-        task.progress(done);
-      }
+      task.tell(done);
     }
   }
   return found;

@@ -96,6 +96,11 @@ struct Task {
   /// Told now and then how much is done, never less than before: bytes of a text, samples of a
   /// raster or of whole leaves, points. May be empty.
   std::function<void(std::uint64_t done)> progress{};
+  void tell(std::uint64_t done) const {
+    if (progress) {
+      progress(done);
+    }
+  }
 };
 
 /// What a worker tells when a task is done.

@@ -18,12 +18,6 @@ void append(std::vector<BoundsRaise>& to, std::span<const BoundsRaise> raises) {
   to.insert(to.end(), raises.begin(), raises.end());
 }
 
-void tell(const Task& task, std::uint64_t samples) {
-  if (task.progress) {
-    task.progress(samples);
-  }
-}
-
 std::string path_of(const TaskSetup& setup, const TileId& tile, TileFile file) {
   return setup.folder + "/" + file_name(tile, file);
 }
@@ -169,7 +163,7 @@ TaskResult TileWorker::collapse(const Task& task) {
     result.lone_samples += leaf.lone_samples;
     leaf.records = {};
     leaves.push_back(std::move(leaf));
-    tell(task, samples += setup_.tree.window(id).samples());
+    task.tell(samples += setup_.tree.window(id).samples());
   }
   put_back(std::move(start));
   if (top.level == 0) {
@@ -226,7 +220,7 @@ TaskResult TileWorker::tighten(const Task& task) {
     stop_if_asked(task.stop, "the build");
     const SampleRange window = setup_.tree.window(leaf);
     replay_over_leaf(chain, *t0, start(window));
-    tell(task, samples += window.samples());
+    task.tell(samples += window.samples());
   }
   put_back(std::move(start));
   for (std::size_t i = 0; i < above.size(); ++i) {
