@@ -26,15 +26,6 @@ bool is_about_crs(const std::string& message) {
   return false;
 }
 
-std::string wkt_of_srs(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  srs.exportToWkt(&text, options);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  return wkt;
-}
-
 }  // namespace
 
 std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,
@@ -64,7 +55,7 @@ std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,
     return "";
   }
   warn_of_shift(prj_of(data), path, warnings);
-  return wkt_of_srs(*srs);
+  return wkt2_of(*srs);
 }
 
 std::string with_third_axis(const std::string& plane) {
@@ -72,7 +63,7 @@ std::string with_third_axis(const std::string& plane) {
   OGRSpatialReference srs;
   const bool is_made =
       srs.importFromWkt(plane.c_str()) == OGRERR_NONE && srs.PromoteTo3D(nullptr) == OGRERR_NONE;
-  return is_made ? wkt_of_srs(srs) : plane;
+  return is_made ? wkt2_of(srs) : plane;
 }
 
 std::string height_unit_of_prj(GDALDataset& data) {
