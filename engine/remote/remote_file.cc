@@ -14,6 +14,7 @@
 #include <cpl_vsi.h>
 
 #include "engine/error.h"
+#include "engine/handle.h"
 #include "engine/remote/http_ranges.h"
 #include "engine/remote/vsi_ranges.h"
 
@@ -58,7 +59,7 @@ class SignedUrl {
       CPLStringList options;
       options.SetNameValue("EXPIRATION_DELAY", "3600");
       options.SetNameValue("VERB", "GET");
-      const CPLCharUniquePtr url(VSIGetSignedURL(path_.c_str(), options.List()));
+      const Handle<char, &VSIFree> url(VSIGetSignedURL(path_.c_str(), options.List()));
       url_ = url ? url.get() : "";
       taken_ = now;
     }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include <cpl_string.h>
+#include <cpl_conv.h>
 #include <ogr_spatialref.h>
 
 #include "engine/construct/grid/dataset_crs.h"
@@ -15,6 +15,7 @@
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "engine/handle.h"
 
 namespace ptin {
 namespace {
@@ -268,7 +269,7 @@ std::string wkt2_of(const OGRSpatialReference& srs) {
   char* text = nullptr;
   static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   const bool is_written = srs.exportToWkt(&text, kOptions) == OGRERR_NONE && text != nullptr;
-  const CPLCharUniquePtr kept(text);
+  const Handle<char, &VSIFree> kept(text);
   return is_written ? text : "";
 }
 
