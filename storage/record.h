@@ -36,6 +36,7 @@ struct VertexSplit {
   float deviation = 0.0F;  ///< Saturated, rounded outward, height's unit.
   std::uint16_t rank = 0;
   std::uint16_t flags = 0;
+  [[nodiscard]] bool has_height() const noexcept { return (flags & kVertexVoid) == 0; }  ///< u.
   friend bool operator==(const VertexSplit&, const VertexSplit&) = default;
 };
 

@@ -94,12 +94,6 @@ class RecordPage {
   [[noreturn]] void report(std::size_t record) const;
 
  private:
-  /// The fields of a corner.
-  struct StoredCorner {
-    std::int64_t x, y, height;
-    std::uint32_t death;
-    bool is_void, has_height;
-  };
   /// Whether the descriptor admits a star.
   [[nodiscard]] bool admits(const VertexSplit& r, const RingSpan& span) const noexcept;
   template <class Bounds>

@@ -33,6 +33,8 @@ struct RingCorner {
   std::uint8_t flags = 0;
   std::array<std::uint8_t, 3>
       unused{};  ///< In the place of padding: builds write corners as they are.
+  [[nodiscard]] bool has_height() const noexcept { return (flags & kNoHeight) == 0; }
+  [[nodiscard]] bool is_void() const noexcept { return (flags & kVoid) != 0; }  ///< The triangle.
   friend bool operator==(const RingCorner&, const RingCorner&) = default;
 };
 

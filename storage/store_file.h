@@ -47,16 +47,6 @@ struct SectionInfo {
 
 enum class PageAccess { kMapped, kPread };
 
-/// What is kept of a file that lies elsewhere.
-struct RemoteCaches {
-  /// In memory: the parts used last, at least 1 MiB of them. A round of reading takes up to 6 MiB
-  /// besides.
-  std::uint64_t memory_bytes = std::uint64_t{64} << 20;
-  /// A folder in which what was read is kept for the next opening too; empty: none. A file in it has
-  /// the name of the content, and so is never out of date.
-  std::string folder;
-};
-
 /// An open store. Immutable; shared by any number of queries and threads.
 class StoreFile {
  public:

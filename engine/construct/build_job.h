@@ -56,12 +56,6 @@ struct Job {
   /// Hands a plan, or progress, to the observer; does nothing where there is none.
   void tell(const BuildPlan& plan) const;
   void tell(const StageProgress& progress) const;
-  /// A function that tells the observer how far the stage `name` is. Borrows the job.
-  [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
-      const char* name) const;
-  /// The same for stages that are named in each call.
-  [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
-  stages() const;
   [[nodiscard]] SourceOptions source_options() const;
   /// Has tasks of reading done, by the driver or by threads of this process.
   [[nodiscard]] RunTasks run_tasks() const;
@@ -107,7 +101,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
                                                  const BuildPlan& plan);
 
 /// Collapses all tiles, tightens them and publishes the file, unless an input changed meanwhile.
-/// @param index  index_json() of the source, for other processes of the build (ReadSource).
+/// @param index  index_json() of the source, for other processes of the build (take_up_source()).
 /// @throws Error as build_hierarchy() and StoreOutput
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
                  const nlohmann::json& index);

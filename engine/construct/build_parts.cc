@@ -15,8 +15,6 @@
 #include "engine/check.h"
 #include "engine/construct/build_job.h"
 #include "engine/construct/build_worker.h"
-#include "engine/construct/memory_plan.h"
-#include "engine/construct/source_kind.h"
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_messages.h"
@@ -259,11 +257,9 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
     }
   }
   BuildWorker worker(inputs, options, resources, note);
-  const MemoryPlan memory = plan_memory(resources.memory_bytes, source_kind(inputs, options));
   const int threads = std::max(resources.threads, 1);
-  const TaskMemory task_memory{tile_bytes_of(memory.kind),
-                               memory.for_tiles(anonymous_bytes_now(), threads), memory.gdal_cache};
-  const TaskGraph graph(worker.tree(), task_memory);
+  const TaskMemory memory = worker.memory(threads);
+  const TaskGraph graph(worker.tree(), memory);
   const BatchOrder order(worker.tree());
   const std::vector<TaskName> names = tasks_of(order, phase, part, parts);
   TaskList tasks(
@@ -273,7 +269,7 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
                                                 : std::nullopt;
       },
       std::move(known));
-  const TaskLimits limits{threads, task_memory.for_tiles, [&](std::uint64_t) {
+  const TaskLimits limits{threads, memory.for_tiles, [&](std::uint64_t) {
                             if (resources.observer != nullptr) {
                               resources.observer->give_back_memory();
                             }

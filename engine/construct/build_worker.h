@@ -13,6 +13,7 @@ namespace ptin {
 
 class TaskWorker;
 class TileTree;
+struct TaskMemory;
 
 /// Does the tasks of reading a source, or opens one that was read as the process that directs did, and
 /// does the tasks of its tiles; it reads of the source only what its tasks want. Both processes see
@@ -38,6 +39,8 @@ class BuildWorker {
   [[nodiscard]] TaskWorker& tasks() noexcept;
   /// REQUIRES: the note has an index.
   [[nodiscard]] const TileTree& tree() const noexcept;
+  /// What tasks of tiles may take here now, on so many threads.
+  [[nodiscard]] TaskMemory memory(int threads) const;
 
  private:
   struct Impl;

@@ -50,7 +50,7 @@ class StoreOutput final : public SegmentOutput {
 
   [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
   /// @throws Error as StoreWriter::add_placed
-  void add(std::span<const std::byte> description) override;
+  void add(const PreparedSegment& segment) override;
   [[nodiscard]] std::uint64_t page_bytes() const override;
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
@@ -73,8 +73,6 @@ class StoreOutput final : public SegmentOutput {
   StorePacker packer_;
   double base_error_ = 0.0;
   double base_deviation_ = 0.0;
-  std::uint64_t records_ = 0;
-  std::uint16_t max_rank_ = 0;
   std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
 };
 

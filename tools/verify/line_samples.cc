@@ -106,8 +106,8 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
             {place_of(line[i - 1], is_laid), p, !is_boundary && !is_laid, is_boundary});
     }
   };
-  const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
-                      "a build with that layer alone"};
+  const LayerWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
+                       "a build with that layer alone"};
   const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
   is_flat_ = is_flat_ || is_flat;
   is_boundary_flat_ = is_boundary && is_flat;

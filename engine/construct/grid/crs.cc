@@ -15,6 +15,7 @@
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "engine/handle.h"
 
 namespace ptin {
 namespace {
@@ -40,19 +41,6 @@ OGRSpatialReference parse(const std::string& text, const char* role) {
                                 "EPSG:32611, WKT or PROJJSON"));
   }
   return srs;
-}
-
-std::string to_wkt2(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  const OGRErr status = srs.exportToWkt(&text, options);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  if (status != OGRERR_NONE || wkt.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "the CRS cannot be written as WKT2:2019; give another one instead");
-  }
-  return wkt;
 }
 
 std::string or_unknown(const char* name) {
@@ -135,7 +123,11 @@ Crs describe(OGRSpatialReference srs) {
       srs.StripVertical();
     }
   }
-  crs.wkt = to_wkt2(srs);
+  crs.wkt = wkt2_of(srs);
+  if (crs.wkt.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the CRS cannot be written as WKT2:2019; give another one instead");
+  }
   crs.geographic = srs.IsGeographic() != 0;
   const char* name = nullptr;
   if (crs.geographic) {
@@ -272,6 +264,14 @@ void warn_of_axes(const Crs& crs, const std::string& file, SourceWarnings& warni
 }
 
 }  // namespace
+
+std::string wkt2_of(const OGRSpatialReference& srs) {
+  char* text = nullptr;
+  static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  const bool is_written = srs.exportToWkt(&text, kOptions) == OGRERR_NONE && text != nullptr;
+  const Handle<char, &VSIFree> kept(text);
+  return is_written ? text : "";
+}
 
 Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,
                        const std::string& file, SourceWarnings& warnings) try {

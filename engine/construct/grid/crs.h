@@ -12,7 +12,12 @@
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 
+class OGRSpatialReference;
+
 namespace ptin {
+
+/// A CRS as WKT2:2019 on one line; "" where it cannot be written so.
+[[nodiscard]] std::string wkt2_of(const OGRSpatialReference& srs);
 
 /// The texts by which a source declares its CRS; "" for none.
 struct DeclaredTexts {

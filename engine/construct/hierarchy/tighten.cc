@@ -208,10 +208,9 @@ VertexId Replay::vertex_at(GridPoint p) const {
 
 VertexId Replay::add_vertex(const VertexSplit& record) {
   const auto u = static_cast<VertexId>(tile_.tin.vertices.size());
-  const bool has_height = (record.flags & VertexSplit::kVertexVoid) == 0;
   tile_.tin.vertices.push_back({record.u, record.height, kNone});
-  tile_.tin.has_height.push_back(has_height ? 1 : 0);
-  tile_.vertex_state.push_back({no_reach(has_height), 0, false});
+  tile_.tin.has_height.push_back(record.has_height() ? 1 : 0);
+  tile_.vertex_state.push_back({no_reach(record.has_height()), 0, false});
   vertices_.emplace(key_of(record.u), u);
   return u;
 }

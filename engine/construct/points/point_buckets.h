@@ -131,7 +131,6 @@ class PointBuckets {
   }
 
  private:
-  struct Kept;
   void require_whole() const;
   /// A height as the file of buckets holds it, as terrains store it.
   [[nodiscard]] HeightBits stored(double height) const;

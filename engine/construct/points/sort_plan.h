@@ -12,6 +12,7 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/point_order.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/lines/edges_file.h"
 #include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/construct/scratch/array_file.h"
@@ -56,9 +57,11 @@ struct SortPlan {
     return buckets + "-" + std::to_string(range);
   }
 };
-void put(ArrayFileWriter& file, const SortPlan& plan);
-/// @throws Error corruption
-[[nodiscard]] SortPlan take_sort_plan(ArrayFileReader& file);
+template <class File, MaybeConst<SortPlan> Plan>
+void serialize(File& file, Plan& p) {
+  file.values(p.grid, p.rule, p.points, p.shares, p.block_records, p.bucket_points, p.least_memory,
+              p.buckets, p.splitters, p.spools, p.fixed);
+}
 
 /// The plan of a source. It depends on the points, the lines and the sizes alone.
 [[nodiscard]] SortPlan plan_sorting(const PointReading& reading, const PointGrid& grid,

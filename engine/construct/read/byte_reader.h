@@ -6,11 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -47,9 +48,6 @@ class ByteReader {
   [[nodiscard]] std::string place() const { return path_ + ":" + std::to_string(line_); }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
   /// Makes at least `count` bytes available where the file has them.
   void want(std::size_t count);
   void take(std::size_t count) noexcept {
@@ -58,7 +56,7 @@ class ByteReader {
   }
 
   std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  Handle<std::FILE, &std::fclose> file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< The bytes of buffer_ still to be handed out.
   std::uint64_t size_ = 0, position_ = 0, line_ = 0;

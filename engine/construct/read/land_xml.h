@@ -5,15 +5,15 @@
 
 #include <cstdint>
 #include <exception>
-#include <memory>
 #include <string>
 #include <string_view>
+
+#include <expat.h>
 
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/byte_reader.h"
-
-struct XML_ParserStruct;
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -71,10 +71,7 @@ class LandXmlElements {
   void read_crs(const char** attributes);
   void read_units(const char** attributes);
 
-  struct ParserFree {
-    void operator()(XML_ParserStruct* p) const;
-  };
-  std::unique_ptr<XML_ParserStruct, ParserFree> parser_;
+  Handle<XML_ParserStruct, &XML_ParserFree> parser_;
   std::exception_ptr failure_;
   int depth_ = 0;
   bool gathering_ = false;

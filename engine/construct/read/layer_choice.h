@@ -14,11 +14,11 @@ namespace ptin {
 /// What the features of a layer should be; several parts or none known beforehand are allowed.
 enum class LayerKind : std::uint8_t { kPoints, kLines, kAreas };
 
+/// A layer of OGR, or a surface of LandXML.
 struct LayerWish {
   LayerKind kind = LayerKind::kPoints;
-  std::string name;  ///< Empty: the only layer that fits.
-  /// What to do where several fit, for the message.
-  std::string advice = "name one with --layer";
+  std::string name;                ///< Empty: the only layer that fits.
+  std::string option = "--layer";  ///< That names one where several fit, for messages.
 };
 
 /// The layer of this name. Without a name, the only one that fits: whose type may hold such

@@ -14,8 +14,6 @@
 
 namespace ptin {
 
-using XyzPoint = SourcePoint;
-
 /// Reads points from CSV or XYZ text (read/text_table.h). The columns of x, y and z are those that
 /// the caller or a header names, else the first three (read/text_rows.h); further columns are
 /// passed over. Numbers have decimal points. Not thread-safe.
@@ -36,7 +34,7 @@ class XyzReader {
   /// @throws Error as TextRows::next(); invalid_argument  no number, NaN or an infinite one where a
   ///                                    number belongs. The context is "path:line".
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
-  [[nodiscard]] bool next(XyzPoint& point);
+  [[nodiscard]] bool next(SourcePoint& point);
 
   /// The units as TextRows tells them.
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -42,7 +43,7 @@ struct SortCounts {
 /// are there and one more is to come, all of them become one run of the next level, whose runs are
 /// treated likewise. Sorting n records in the memory of m thus writes each of them 1 + log(n / m) /
 /// log(m / 256) times, rounded down: once up to n = m^2 / 256.
-template <class Record, class Before>
+template <class Record, class Before = std::less<>>
 class ExternalSorter {
   static_assert(std::is_trivially_copyable_v<Record>);
 

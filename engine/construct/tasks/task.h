@@ -96,6 +96,11 @@ struct Task {
   /// Told now and then how much is done, never less than before: bytes of a text, samples of a
   /// raster or of whole leaves, points. May be empty.
   std::function<void(std::uint64_t done)> progress{};
+  void tell(std::uint64_t done) const {
+    if (progress) {
+      progress(done);
+    }
+  }
 };
 
 /// What a worker tells when a task is done.
@@ -175,10 +180,12 @@ auto read_input(const std::string& folder, const InputFile& input, Read&& read) 
 
 // As JSON: for the manifest, for messages between processes and for the notes of parts. At most
 // 1 KB, for trees of up to 20 levels.
+[[nodiscard]] nlohmann::json json_of(const ArrayFileFacts& facts);
 [[nodiscard]] nlohmann::json json_of(const TaskName& name);
 [[nodiscard]] nlohmann::json json_of(const Task& task);
 [[nodiscard]] nlohmann::json json_of(const TaskResult& result);
 /// @throws nlohmann::json::exception  the JSON is none that json_of() made
+[[nodiscard]] ArrayFileFacts array_facts_in(const nlohmann::json& json);
 [[nodiscard]] TaskName task_name_in(const nlohmann::json& json);
 [[nodiscard]] Task task_in(const nlohmann::json& json);
 [[nodiscard]] TaskResult task_result_in(const nlohmann::json& json);

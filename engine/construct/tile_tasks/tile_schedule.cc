@@ -215,13 +215,13 @@ void TileSchedule::add_segments(const TileId& tile) {
   const TaskName producer = producer_of(tile, TileFile::kDescriptions);
   const InputFile input{tile, TileFile::kDescriptions,
                         log_.results().at(producer).facts(TileFile::kDescriptions)};
-  std::vector<std::vector<std::byte>> segments;  // all are sound before the first is added
+  std::vector<PreparedSegment> segments;  // all are sound before the first is added
   read_input(log_.workspace().temporary_folder(), input, [&](ArrayFileReader& file) {
     while (!file.at_end()) {
-      segments.push_back(file.take_copy<std::byte>());
+      file.values(segments.emplace_back());
     }
   });
-  for (const std::vector<std::byte>& segment : segments) {
+  for (const PreparedSegment& segment : segments) {
     log_.output().add(segment);
   }
 }

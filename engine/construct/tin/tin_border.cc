@@ -21,7 +21,7 @@ void BorderFinder::add(const GridTriangle& t) {
 /// Takes out the edges that have one triangle on each side. The others go to the sorter: triangles
 /// of other pieces may lie beside them.
 void BorderFinder::clear_piece() {
-  std::sort(piece_.begin(), piece_.end(), ByEnds());
+  std::sort(piece_.begin(), piece_.end());
   for (std::size_t first = 0; first < piece_.size();) {
     std::size_t end = first + 1;
     while (end < piece_.size() && piece_[end].low == piece_[first].low &&

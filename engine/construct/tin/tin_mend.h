@@ -16,7 +16,7 @@ class PointOrder;
 
 /// A mesh on disk. Its triangles are counter-clockwise but for slivers and faults.
 struct MeshOnDisk {
-  RecordFile<GridTriangle> triangles;  ///< In the order of ByPlace.
+  RecordFile<GridTriangle> triangles;  ///< Ascending.
   RecordFile<std::uint64_t> places;    ///< Of their vertices along the curve, ascending.
 };
 

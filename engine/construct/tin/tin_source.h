@@ -109,7 +109,6 @@ class TinTriangles {
   static constexpr std::uint64_t kMostBorderInMemory = std::uint64_t{1} << 16;
 
  private:
-  struct Kept;
   TinTriangles() = default;
   [[nodiscard]] std::uint64_t place_of_part(std::uint64_t i, std::uint64_t n) const;
   void take(const RecordFile<GridTriangle>& from, std::uint64_t begin, std::uint64_t end,
