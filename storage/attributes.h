@@ -30,7 +30,7 @@ inline constexpr Interval kAllHeights{-std::numeric_limits<double>::infinity(),
 /// The triangles of a star, or of those of a page or a subtree. A page's or a subtree's are the
 /// union, the largest error and the least death.
 struct StarAttributes {
-  GridBox box;         ///< Of the polygons, grid units, closed.
+  GridBox box;         ///< Box of the polygons, grid units, closed.
   Interval heights;    ///< Codes of the vertices that have one; empty when none has.
   double error = 0.0;  ///< All triangles live below it; may be +infinity.
   /// None dies below it; -infinity when one lives on.

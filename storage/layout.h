@@ -79,7 +79,7 @@ enum class SectionKind : std::uint32_t {
 struct SectionEntry {
   std::uint32_t kind, reserved;
   std::uint64_t offset, bytes;
-  std::uint64_t checksum;  ///< Of the section; of the root node for kIndex; 0 for kPages.
+  std::uint64_t checksum;  ///< The section's; for kIndex that of the root node; 0 for kPages.
 };
 static_assert(sizeof(SectionEntry) == 32 && offsetof(SectionEntry, offset) == 8);
 

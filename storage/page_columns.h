@@ -19,8 +19,8 @@ namespace ptin {
 /// The columns of a page, in the order of the file: a number for each record.
 enum class PageColumn : std::uint8_t {
   kX,
-  kY,       ///< Of u.
-  kHeight,  ///< Of u, as an ordered number; where u has none, the least of its interval.
+  kY,       ///< Position of u.
+  kHeight,  ///< Ordered height of u; where u has none, the least of its interval.
   kWest,    ///< From u to the roi's sides.
   kSouth,
   kEast,

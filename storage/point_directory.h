@@ -47,7 +47,7 @@ struct DirectoryRoot {
   [[nodiscard]] std::uint64_t entries_of(std::uint32_t cell) const noexcept {
     return end[cell] - (cell == 0 ? 0 : end[cell - 1]);
   }
-  /// Of a node, from the begin of all nodes on.
+  /// Place of a node, from the beginning of all nodes on.
   [[nodiscard]] ByteRange range_of(std::uint32_t cell) const noexcept {
     return {(end[cell] - entries_of(cell)) * layout::kDirectoryEntryBytes,
             entries_of(cell) * layout::kDirectoryEntryBytes};

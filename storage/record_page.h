@@ -39,7 +39,7 @@ struct RingPlace {
 
 /// What the corners of a ring, and its triangles, span.
 struct RingSpan {
-  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Of the corners, grid units.
+  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Box of the corners, grid units.
   std::int64_t max_x = INT64_MIN, max_y = INT64_MIN;
   std::uint32_t low = UINT32_MAX, high = 0;  ///< Ordered heights; low > high: no corner has one.
   std::uint32_t least_death = UINT32_MAX;    ///< As death_bits().

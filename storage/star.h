@@ -43,7 +43,7 @@ struct RingCorner {
 struct StarredRecords {
   std::vector<VertexSplit> splits;
   std::vector<RingCorner> corners;      ///< Ring after ring.
-  std::vector<std::uint32_t> ring_end;  ///< Of record i, in `corners`.
+  std::vector<std::uint32_t> ring_end;  ///< Ends of rings, in `corners`.
 
   [[nodiscard]] std::size_t size() const noexcept { return splits.size(); }
   [[nodiscard]] bool empty() const noexcept { return splits.empty(); }

@@ -61,7 +61,7 @@ struct BuildReport {
   std::uint64_t t0_vertices = 0;
   std::uint16_t max_rank = 0;  ///< Chains of splits are at most one longer.
   std::uint64_t file_bytes = 0;
-  std::uint64_t source_bytes = 0;  ///< Of all files of all inputs; 0 where nothing tells them.
+  std::uint64_t source_bytes = 0;  ///< Bytes of all files of all inputs; 0 where unknown.
   double seconds = 0.0;
   bool resumed = false;  ///< An interrupted build was taken up.
   /// Why temporary files could not be removed after the output was complete; "" when they were.

@@ -40,8 +40,8 @@ struct Job {
   const BuildResources& resources;
   const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
-  SourceLines lines{};  ///< Beside the points, from when they are read.
-  /// Of the finished pages, from when they are about to get the output's name.
+  SourceLines lines{};  ///< The lines beside the points; set once read.
+  /// The inode of the finished pages, from when they are about to get the output's name.
   std::optional<std::uint64_t> inode_of_output{};
   nlohmann::json began_with{};  ///< input_fingerprint() before anything was read.
   bool inputs_changed = false;  ///< Since then: what was read of them may be of both.

@@ -19,8 +19,8 @@ namespace ptin {
 
 /// How the memory of one build is shared out. Made once, before anything is read, and handed down.
 struct MemoryPlan {
-  InputKind kind = InputKind::kRaster;  ///< Of the source that it is made for.
-  std::uint64_t limit = 0;              ///< Of the process's anonymous memory, bytes.
+  InputKind kind = InputKind::kRaster;  ///< The source that it is made for.
+  std::uint64_t limit = 0;              ///< Most anonymous memory of the process, bytes.
   std::uint64_t allowed = 0;            ///< By cgroups and resource limits; may be less.
   std::uint64_t gdal_cache = 0;         ///< Decoded blocks of rasters.
   std::uint64_t lines = 0;              ///< Breaklines and boundary, from reading to the end.

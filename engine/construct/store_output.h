@@ -81,8 +81,8 @@ class StoreOutput final : public SegmentOutput {
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);
 
-/// Beside the triangles of coarsest_tin(): their deaths as the file has them.
-/// @param deaths  Beside tin.triangles.
+/// Deaths of the triangles of coarsest_tin(), as the file has them.
+/// @param deaths  One for each of tin.triangles.
 [[nodiscard]] std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths,
                                                  const StoredDetail& detail);
 

@@ -13,13 +13,13 @@ namespace ptin {
 
 struct CrsFacts {
   std::string wkt;   ///< WKT2 on one line; empty when unknown.
-  std::string name;  ///< Of the horizontal part.
+  std::string name;  ///< Name of the horizontal part.
   std::string code;  ///< "EPSG:32611" of the horizontal part; empty when it has none.
   bool has_third_axis =
       false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.
   /// The name of the vertical part; "ellipsoidal height" of a third axis. Empty when it is unknown.
   std::string vertical_name;
-  std::string vertical_code;  ///< Of the vertical part, or of a CRS of three axes as a whole.
+  std::string vertical_code;  ///< Code of the vertical part, or of a whole CRS of three axes.
   bool geographic = false;
   std::string horizontal_unit = "unknown";
   std::string vertical_unit = "unknown";

@@ -23,7 +23,7 @@
 namespace ptin {
 
 struct RangedFileOptions {
-  /// Of what was read, the part used last is kept in memory; at least kLeastCacheBytes.
+  /// Memory for what was read and used last; at least kLeastCacheBytes.
   std::uint64_t cache_bytes = std::uint64_t{64} << 20;
   /// Where what was read is kept on disk, for the next opening too (sparse_cache.h); empty: nowhere.
   std::string cache_folder;
@@ -70,7 +70,7 @@ class RangedFile final : public ReadableFile {
   struct Costs {
     std::uint64_t rounds = 0, requests = 0, bytes = 0;
   };
-  /// Of one thread, which is one question.
+  /// The counters of one thread, which is one question.
   struct Asker {
     std::vector<ByteRange> announced;  ///< In the order of reading.
     Costs costs;

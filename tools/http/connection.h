@@ -32,7 +32,7 @@ struct ConnectionHost {
   const Limits& limits;
   Service& service;
   Admission& admission;
-  Turns& turns;  ///< Of answers that take more than one piece.
+  Turns& turns;  ///< Turns of answers that take more than one piece.
   std::uint64_t next_request = 1;
   /// The one body that waits for memory and goes on beyond their share: else many that have a part of
   /// theirs might wait for each other.

@@ -25,10 +25,10 @@ struct IoRequest {
   /// About how long all of it takes. It may take twice as long: a question that is under way is
   /// finished, unless it lasts beyond that.
   double seconds = 60.0;
-  std::uint64_t most_times = 200;   ///< Of each question by each way; >= 1.
+  std::uint64_t most_times = 200;   ///< Most runs of a question by each way; >= 1.
   int most_threads = 1;             ///< >= 1.
   std::optional<double> tolerance;  ///< As DetailRequest::tolerance, of every question.
-  std::uint64_t memory_bytes = kMemoryOfQuestion;  ///< Of a question, and of the second index.
+  std::uint64_t memory_bytes = kMemoryOfQuestion;  ///< For a question, and for the second index.
   /// Where the second index is for as long as it is measured. Empty: beside the file.
   std::string temporary_folder;
   std::stop_token stop;
@@ -88,7 +88,7 @@ struct ThreadFigures {
   QuestionKind kind = QuestionKind::kPoint;
   ReadWay way = ReadWay::kAnnounced;
   int threads = 1;
-  std::uint64_t questions = 0;                           ///< Of one run.
+  std::uint64_t questions = 0;                           ///< Questions of one run.
   std::vector<double> cold_per_second, warm_per_second;  ///< Questions; one number a run.
   std::uint64_t not_cold = 0;                            ///< Runs that are in no figure.
 };
@@ -102,10 +102,10 @@ struct SearchFigures {
 struct IndexFigures {
   std::vector<SearchFigures> searches;
   std::string why_no_second;       ///< Empty: there is a second index.
-  double build_seconds = 0.0;      ///< Of the second index.
+  double build_seconds = 0.0;      ///< Time to build the second index.
   std::uint64_t bytes = 0;         ///< Its files.
-  std::uint64_t packed_bytes = 0;  ///< Of the packed R-tree, in the file.
-  std::string why_not_cold;        ///< Of the second index; empty: it was cold.
+  std::uint64_t packed_bytes = 0;  ///< Bytes of the packed R-tree in the file.
+  std::string why_not_cold;        ///< Why the second index was not cold; empty: it was.
 };
 
 struct IoReport {

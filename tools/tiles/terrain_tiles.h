@@ -39,7 +39,7 @@ namespace ptin::tools {
 struct TerrainTilesOptions {
   /// Cesium assumes heights above the ellipsoid; vertical_datum() tells what the file's are.
   GlobeOptions globe;
-  std::uint32_t most_vertices = 65'000;  ///< Of a tile.
+  std::uint32_t most_vertices = 65'000;  ///< Most vertices of a tile.
   std::uint64_t coverage_triangles = 200'000;
 };
 

@@ -191,7 +191,7 @@ nlohmann::json TerrainTileset::tileset_json() const {
         {"subtrees", {{"uri", "subtrees/{level}/{x}/{y}.subtree"}}}}}};
   const double range = pyramid_.globe().max_height() - pyramid_.globe().min_height();
   return {{"asset", {{"version", "1.1"}}},
-          // Of nothing at all: whoever draws nothing misses the heights.
+          // The error of drawing nothing at all: what is missed are the heights.
           {"geometricError", std::max(2 * first_error_, range)},
           {"root", std::move(root)}};
 }

@@ -67,7 +67,7 @@ class TerrainTileset {
                                          const TerrainTilesOptions& options,
                                          const QueryLimits& limits) const;
 
-  double extent_ = 0.0;  ///< Of the terrain, metres.
+  double extent_ = 0.0;  ///< Extent of the terrain, metres.
   double first_error_ = 0.0;
   TilePyramid pyramid_;
 };

@@ -69,8 +69,8 @@ void TileCut::cut_at(const Border& border) {
     return border.is_upper ? -beyond : beyond;  // negative: outside
   };
   rest_.clear();
-  // Of two points along a border the one edge is crossed once, not there and back: its triangle is
-  // beside the tile, and is one of those around the cut point.
+  // Two points along a border have one edge, which is crossed once, not there and back: its
+  // triangle is beside the tile, and is one of those around the cut point.
   const std::size_t edges = polygon_.size() == 2 ? 1 : polygon_.size();
   for (std::size_t i = 0; i < polygon_.size(); ++i) {
     const Id a = polygon_[i];

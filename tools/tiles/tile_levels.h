@@ -25,11 +25,11 @@ struct TileLevel {
 
 /// What the levels are chosen from.
 struct LevelsWanted {
-  double first_error = 77067.0;  ///< Of level 0, metres; each level halves it.
-  double first_area = 1.0;       ///< Of a tile of level 0, in parts of that of the terrain's box.
+  double first_error = 77067.0;  ///< Error of level 0, metres; each level halves it.
+  double first_area = 1.0;       ///< Area of a tile of level 0, in parts of the terrain's box.
   int least_finest = 0;          ///< The finest level is this one or a further one.
   int most_levels = 24;
-  std::uint64_t mean_vertices = 1000;  ///< Of the finest level's tiles, at most.
+  std::uint64_t mean_vertices = 1000;  ///< Mean of the finest level's tiles, at most.
 };
 
 /// The levels from 0 to the finest. That is the first one whose tiles would hold at most

@@ -24,7 +24,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Of a vertex of a boundary without heights: any other height is lower, and stands.
+/// Height of a vertex of a boundary without heights: any other is lower, and stands.
 constexpr double kNoHeight = std::numeric_limits<double>::infinity();
 
 /// A height as the file stores it.

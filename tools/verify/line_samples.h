@@ -81,7 +81,7 @@ class LineSamples {
   std::vector<LinePiece> pieces_;  ///< Sorted by their least x.
   std::int64_t widest_ = 0;        ///< The largest width of a piece.
   bool has_boundary_ = false, is_flat_ = false, is_boundary_flat_ = false;
-  std::vector<std::vector<LinePiece>> bands_;  ///< Of the boundary, by rows of the terrain.
+  std::vector<std::vector<LinePiece>> bands_;  ///< The boundary, by rows of the terrain.
   std::vector<std::pair<std::size_t, GridPoint>> divisions_;
 };
 

@@ -31,7 +31,7 @@ namespace ptin::tools {
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
   PointChoice points;
-  PointMerge duplicates = PointMerge::kMean;  ///< Of points that fall together.
+  PointMerge duplicates = PointMerge::kMean;  ///< How points that fall together are merged.
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   /// Samples outside were left out; map units: min x, min y, max x, max y.

@@ -88,7 +88,7 @@ class Verifier {
   double slack_ = 0.0;
   bool is_grid_ = false;  ///< The source is a raster.
   AgainstReport report_;
-  std::optional<BorderLines> border_;  ///< Of the source, in and around the window at hand.
+  std::optional<BorderLines> border_;  ///< The source's border, in and around the window at hand.
   std::mt19937_64 random_{20260101};
 };
 

@@ -70,7 +70,7 @@ class CollapseChooser {
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
   const FullSurface* full_ = nullptr;
-  bool has_fixed_edges_ = false;  ///< Of `full_`.
+  bool has_fixed_edges_ = false;  ///< Whether `full_` has any.
 };
 
 }  // namespace ptin

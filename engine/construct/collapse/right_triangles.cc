@@ -60,7 +60,7 @@ struct Shape {
   Position apex;
   std::int32_t rows, up;
   std::int32_t left, right, left_step, right_step;
-  double slope_x, slope_y;  ///< Of the plane, codes a cell.
+  double slope_x, slope_y;  ///< Slopes of the plane, codes a cell.
 };
 
 /// True when all samples of the triangle have a height and residuals within the tolerance, or none
@@ -239,7 +239,7 @@ class Halving {
 
   const SampleGrid& grid_;
   std::span<const std::uint8_t> needed_;
-  std::vector<std::uint32_t> other_half_;  ///< Of each cell: 1 + its half in triangles_; or 0.
+  std::vector<std::uint32_t> other_half_;  ///< For each cell: 1 + its half in triangles_; or 0.
   std::vector<RightTriangle> triangles_;
 };
 

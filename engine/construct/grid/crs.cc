@@ -242,7 +242,7 @@ class OwnCrs {
   }
 
   DeclaredTexts declared_;
-  std::string plane_unit_ = "unknown";  ///< Of a CRS that was dropped.
+  std::string plane_unit_ = "unknown";  ///< The unit of a CRS that was dropped.
   const std::string& file_;
   SourceWarnings& warnings_;
 };

@@ -46,7 +46,8 @@ struct InnerSegment {
   /// In the order of the collapses. Until tightening `error` is the own part over witnesses, and
   /// `deviation` is 0.
   std::vector<VertexSplit> records;
-  /// Of the own records. Their triangles name successors by number: own records saturate over these.
+  /// Stars of the own records. Triangles name successors by number: own records saturate over
+  /// these.
   RecordStars stars;
   std::vector<std::uint32_t> exported;  ///< Numbers of the records that this tile pushed up.
 };

@@ -70,7 +70,7 @@ class Replay {
   std::unique_ptr<FullSurface> full_;
   GridBox box_;
   std::vector<TriangleId> near_;  ///< Triangles of T0 that the leaf may touch.
-  PackedBoxes near_boxes_;        ///< Of the triangles in near_.
+  PackedBoxes near_boxes_;        ///< Boxes of the triangles in near_.
   std::unordered_map<VertexKey, VertexId> vertices_;
   std::optional<PlaneBlocks> blocks_;  ///< In the place of lists of samples, where that suits.
   StarSamples star_;

@@ -10,12 +10,12 @@ namespace ptin {
 
 /// Bytes that each kind of work takes: upper bounds over terrains of every kind that was measured.
 struct TileBytes {
-  std::uint64_t collapse_of_sample = 1320;  ///< Of a batch, for a sample of its largest leaf.
-  std::uint64_t replay_of_sample = 500;     ///< Of a replay, for a sample of the leaf.
-  double join_of_pushed = 2.2;           ///< Of a join, for a byte of its children's pushed files.
+  std::uint64_t collapse_of_sample = 1320;  ///< A batch, for a sample of its largest leaf.
+  std::uint64_t replay_of_sample = 500;     ///< A replay, for a sample of the leaf.
+  double join_of_pushed = 2.2;              ///< A join, for a byte of its children's pushed files.
   std::uint64_t pushed_of_vertex = 880;  ///< A vertex in these files; the plan expects joins by it.
-  double close_of_segment = 2.0;         ///< Of closing, for a byte of its segment.
-  std::uint64_t fixed = 8U << 20;        ///< Of any work, besides.
+  double close_of_segment = 2.0;         ///< Closing, for a byte of its segment.
+  std::uint64_t fixed = 8U << 20;        ///< Any work, besides.
 
   /// A batch: its leaves one by one, then their join.
   /// @param leaf_samples  Of its largest leaf.

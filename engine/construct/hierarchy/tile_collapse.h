@@ -36,7 +36,7 @@ struct CollapsedLeaf {
   StarredRecords records;  ///< Final. Those of a first pass have empty rings.
   Tile pushed;             ///< With all samples.
   std::unique_ptr<FullSurface> full;
-  GridBox box;                     ///< Of all samples and the full surface.
+  GridBox box;                     ///< Holds all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< As StartedTile.
 };
 

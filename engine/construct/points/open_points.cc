@@ -117,7 +117,7 @@ class TextPoints final : public PointStream {
   bool is_whole_;
   TakeInvalidRow invalid_row_;
   XyzReader reader_;
-  SourceWarning skipped_;  ///< Of the rows that were passed over.
+  SourceWarning skipped_;  ///< What to say of the rows that were passed over.
   PointStreamFacts facts_;
   SourceWarnings warnings_;
   std::optional<double> nodata_;  ///< The one that comments declare.

@@ -18,7 +18,7 @@ namespace ptin {
 struct PointPortion {
   std::uint64_t input = 0;  ///< The number of the file among the inputs.
   PointPart part;
-  std::uint64_t bytes = 1;  ///< Of the part in the file, about: for progress.
+  std::uint64_t bytes = 1;  ///< Bytes of the part in the file, about: for progress.
 };
 
 /// How large portions are, at most; a file that cannot be begun in the middle is one portion.
@@ -39,7 +39,7 @@ class SourceAgreement {
   [[nodiscard]] const std::string& crs() const noexcept { return crs_; }
   [[nodiscard]] const std::string& vertical_crs() const noexcept { return vertical_crs_; }
   [[nodiscard]] const DeclaredUnits& units() const noexcept { return units_; }
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< Of the first.
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< The first one's.
 
  private:
   void require(bool is_same, const std::string& path) const;

@@ -53,8 +53,8 @@ class PointSource {
   ///                resource_exhausted  the disk is full
   ///                cancelled           `work.stop` fired
   ///                corruption          as sort()
-  ///                Of several files that cannot be read, the first one's. All are opened before
-  ///                any is read.
+  ///                If several files cannot be read, the error is the first one's. All are opened
+  ///                before any is read.
   PointSource(const std::vector<std::string>& inputs, const SourceOptions& options, PointWork work);
   /// Removes all files but buckets, whatever comes of that.
   ~PointSource();

@@ -38,10 +38,10 @@ struct SortSizes {
 struct SortPlan {
   PointGrid grid;
   PointMerge rule = PointMerge::kMean;
-  std::uint64_t points = 0;         ///< Of all spools.
+  std::uint64_t points = 0;         ///< Points of all spools.
   std::uint64_t shares = 1;         ///< Tasks that share out.
   std::uint64_t block_records = 0;  ///< Records that are written to a range at a time.
-  std::uint64_t bucket_points = 0;  ///< Of a bucket; the last one of a range may have fewer.
+  std::uint64_t bucket_points = 0;  ///< Points of a bucket; the last one of a range may have fewer.
   std::uint64_t least_memory = 0;   ///< As SortSizes.
   std::string buckets;  ///< The path of the file of a range's buckets, but for its number.
   std::vector<std::uint64_t> splitters;  ///< Ascending.

@@ -55,8 +55,8 @@ class PointStream {
   /// Points left out so far: by the PointChoice, or by the file itself, which marks them as
   /// withheld or gives them no height.
   [[nodiscard]] virtual LeftOutPoints left_out() const noexcept { return {}; }
-  /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
-  /// points. Other streams have nothing to tell.
+  /// What the rows of a part of a text say of whether the text is one of points, once the part has
+  /// been read to its end. None from other streams.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
   /// Warnings so far. Each part of a file tells those of what lies in it, and those that
   /// are about the file as a whole (SourceWarning::count is 0) may be told by every part.

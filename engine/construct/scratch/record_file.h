@@ -61,7 +61,7 @@ class RecordFile {
     written_ += block_.size();
     block_.clear();
   }
-  /// Of each block of records. Complete after finish().
+  /// One for each block of records. Complete after finish().
   [[nodiscard]] const std::vector<std::uint64_t>& checksums() const noexcept { return checksums_; }
   /// @throws Error io_error, resource_exhausted
   void sync() { file_->sync(); }
@@ -131,7 +131,7 @@ class RecordFile {
   std::vector<Record> block_;
   std::uint64_t written_ = 0;
   std::vector<std::uint64_t> checksums_;
-  std::string path_;  ///< Of a file that was taken up.
+  std::string path_;  ///< Path of a file that was taken up.
 };
 
 }  // namespace ptin

@@ -22,12 +22,12 @@
 namespace ptin {
 
 enum class TaskKind : std::uint8_t {
-  // Of reading a source, before its tiles are known; numbered from 0.
+  // Reading a source, before its tiles are known; numbered from 0.
   kScan,   ///< A band of a raster: its heights are looked at.
   kRead,   ///< A portion of points: those that are wanted go to a spool.
   kShare,  ///< A share of these: they are put on the grid, apart for each range of the curve.
   kSort,   ///< A range of the curve: its points are sorted into buckets.
-  // Of tiles.
+  // Tiles.
   kCollapse,  ///< A batch: its leaves are read from the source, collapsed and joined.
   kJoin,      ///< A tile of level 2 or more: what its children pushed up is joined and collapsed.
   kTighten,   ///< A batch: the segments above it are replayed over its leaves.
@@ -101,7 +101,7 @@ struct Task {
 /// What a worker tells when a task is done.
 struct TaskResult {
   std::array<ArrayFileFacts, kTileFiles> files{};  ///< By TileFile; 0 bytes: no such file.
-  std::uint64_t page_bytes = 0;                    ///< Of the pages themselves.
+  std::uint64_t page_bytes = 0;                    ///< Bytes of the pages themselves.
   std::uint64_t lone_samples = 0;                  ///< Collapse: in its leaves; see StartedTile.
   std::string told{};                              ///< Scan: what was found; at most 1 KB.
   [[nodiscard]] const ArrayFileFacts& facts(TileFile file) const {

@@ -55,7 +55,7 @@ class ThreadRun {
   /// What one thread does. Its token is asked for a stop once, since nothing begins after that.
   struct AtWork {
     std::stop_source stop;
-    std::uint64_t number = 0;  ///< Of its task, in the order in which they are handed out, from 1.
+    std::uint64_t number = 0;  ///< Its task's place in the order of handing out, from 1.
   };
 
   void work(AtWork& mine) noexcept;

@@ -79,9 +79,9 @@ class TaskList final : public TaskSchedule {
   std::vector<InputFile> inputs_;
   std::uint64_t bytes_ = 0;
   std::function<void(const StageProgress& progress)> tell_;
-  std::vector<std::uint64_t> sizes_;  ///< Of tasks of reading.
+  std::vector<std::uint64_t> sizes_;  ///< Sizes of tasks of reading.
   std::mutex mutex_;                  ///< Guards what follows.
-  std::vector<std::uint64_t> done_;   ///< Of these sizes.
+  std::vector<std::uint64_t> done_;   ///< How much of each is done.
   std::uint64_t all_done_ = 0, total_ = 0;
 };
 

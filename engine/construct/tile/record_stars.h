@@ -18,10 +18,10 @@ namespace ptin {
 /// triangle names its successor, the record whose error will be its death.
 struct RecordStars {
   std::vector<RingCorner> corners;  ///< Ring after ring; all deaths are kLivesOn as yet.
-  /// Beside `corners`: the index of the triangle's successor in Tile::records; kNone for a triangle
-  /// of the full TIN, and where there is no triangle.
+  /// For each of `corners`: the index of its triangle's successor in Tile::records; kNone for a
+  /// triangle of the full TIN, and where there is no triangle.
   std::vector<std::uint32_t> successors;
-  std::vector<std::uint32_t> ring_end;  ///< Of star i, in `corners`.
+  std::vector<std::uint32_t> ring_end;  ///< Ends of stars, in `corners`.
 
   /// Makes room for stars: six triangles each, and meshes have fewer in the mean.
   void reserve(std::size_t stars);

@@ -21,14 +21,14 @@ namespace ptin {
 struct SurroundingSamples {
   GridBox box;
   std::vector<HeightBits> heights;
-  std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
+  std::vector<std::uint8_t> valid;  ///< For each of `heights`; 0 for a sample without a height.
 };
 
 /// A leaf with the full TIN of its window, and the full surface under it.
 struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;
-  GridBox box;                     ///< Of all samples and the full surface.
+  GridBox box;                     ///< Holds all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
   SurroundingSamples around;       ///< Where they were asked for; else empty.
 };

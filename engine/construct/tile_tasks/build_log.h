@@ -60,7 +60,7 @@ class BuildLog {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
   TaskResults results_;
   std::uint64_t written_ = 0;
-  nlohmann::json position_;  ///< Of the output, at the last note_written().
+  nlohmann::json position_;  ///< The output's, at the last note_written().
   std::vector<nlohmann::json> lines_;
   std::set<std::string> unsynced_, superfluous_;  ///< Names of files.
 };

@@ -266,7 +266,7 @@ void TileSchedule::progress(const TaskName& name, std::uint64_t done) {
 // -------------------------------------------------------------------------------------------------
 // Damage.
 
-/// Of a task that was done again for one of its files: removes the others where their readers are
+/// Removes files of a task that was done again for the sake of another one, where their readers are
 /// done already.
 void TileSchedule::drop_what_nobody_needs(const TaskName& name) {
   const auto drop_after = [&](TileFile file, const TaskName& reader) {

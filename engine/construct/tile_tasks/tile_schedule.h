@@ -89,8 +89,8 @@ class TileSchedule final : public TaskSchedule {
   std::uint64_t end_of_places_;  ///< Where its pages go.
   Tell tell_;
   std::mutex mutex_;                    ///< Guards what follows.
-  std::map<TaskName, Counts> counted_;  ///< Of batches, what was done of them.
-  std::map<TaskKind, Counts> all_;      ///< Of all batches.
+  std::map<TaskName, Counts> counted_;  ///< What was done of each batch.
+  std::map<TaskKind, Counts> all_;      ///< What was done of all batches.
 };
 
 }  // namespace ptin

@@ -167,7 +167,7 @@ class HighestSearch final : private BestStarVisitor {
     }
   }
 
-  /// Of equally high points takes the one farthest south, then farthest west.
+  /// Among equally high points the one farthest south counts, then farthest west.
   void look_at_border(const LivingTriangle& t) {
     std::array<ClippedCorner, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -239,8 +239,8 @@ class HighestSearch final : private BestStarVisitor {
   Detail detail_;
   LevelStars stars_;
   std::optional<GridRegion> region_;
-  std::optional<PolygonBorder> border_;  ///< Of a polygon.
-  GridWindow window_{};                  ///< Of a window, or of the terrain.
+  std::optional<PolygonBorder> border_;  ///< The border, if the region is a polygon.
+  GridWindow window_{};                  ///< A window, or that of the terrain.
   LivingFilter filter_;
   std::set<HighCandidate> best_;
   ClippedCorner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.

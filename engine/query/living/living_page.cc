@@ -52,7 +52,7 @@ struct Star {
   std::uint32_t error;     ///< Short bits.
   bool is_closed;          ///< As has_closed_ring().
   std::int64_t height;     ///< Ordered; of u, or what the corners' heights are told from.
-  std::int64_t low, high;  ///< Of the corners, at most.
+  std::int64_t low, high;  ///< Limits of the corners' heights.
 };
 
 /// Takes the corners of a ring apart. A corner takes up to 114 bits, nearly always at most 57: then

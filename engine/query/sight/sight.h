@@ -57,16 +57,16 @@ enum class SightVerdict : std::uint8_t { kVisible, kHidden, kUndecided, kUndefin
 /// A point of the line.
 struct SightPoint {
   MapPoint position;      ///< Map units.
-  double share = 0.0;     ///< Of the way from a to b.
+  double share = 0.0;     ///< Share of the way from a to b.
   double distance = 0.0;  ///< From a over ground, height's unit.
-  double height = 0.0;    ///< Of the line there, height's unit.
+  double height = 0.0;    ///< Height of the line there, height's unit.
 };
 
 struct SightResult {
   SightVerdict verdict = SightVerdict::kUndecided;
   /// What the ends stand on. Exact, unless the budget ended before they were known.
   PointState state_a = PointState::kOutside, state_b = PointState::kOutside;
-  double length = 0.0;  ///< Of the line over ground, height's unit.
+  double length = 0.0;  ///< Length of the line over ground, height's unit.
   /// Set when hidden: where the line first goes below ground. With `verdict_only`, or when not
   /// exact, some point where it is below ground.
   std::optional<SightPoint> obstruction;

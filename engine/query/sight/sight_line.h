@@ -18,7 +18,7 @@ enum class PieceVerdict : std::uint8_t { kVisible, kHidden, kUndecided };
 /// the line above the full surface. Heights are in the height's unit.
 struct SightPiece {
   double from = 0.0, to = 0.0;                ///< Shares of the way.
-  double ground_from = 0.0, ground_to = 0.0;  ///< Of the surface there; set only on surface.
+  double ground_from = 0.0, ground_to = 0.0;  ///< Heights of the surface there; set on surface.
   double deviation = 0.0;  ///< Most that the full surface deviates from the piece.
   double highest = 0.0;    ///< No point of the full surface is higher.
   bool surface = false;
@@ -42,9 +42,9 @@ struct SightPiece {
 /// What does not change while one terrain is asked.
 struct SightFacts {
   HeightEncoding heights;
-  double file_deviation = 0.0;    ///< Of the file's full TIN from its source.
-  double finest_deviation = 0.0;  ///< Of final pieces: the file's, or that of the level of detail.
-  double min_height = 0.0, max_height = 0.0;  ///< Of the whole terrain.
+  double file_deviation = 0.0;    ///< Deviation of the file's full TIN from its source.
+  double finest_deviation = 0.0;  ///< Deviation of final pieces: the file's, or the level's.
+  double min_height = 0.0, max_height = 0.0;  ///< Heights of the whole terrain.
   const Detail* detail = nullptr;             ///< The level of detail; borrowed.
   bool is_level_asked = false;                ///< A level of detail leaves records out.
   bool has_voids = false;

@@ -108,7 +108,7 @@ class SplitCode {
   std::vector<std::uint32_t> rank_;  ///< Where each stands in `curve_`.
   std::int64_t last_height_ = 0;
 
-  Star star_;                       ///< Of w.
+  Star star_;                       ///< The star of w.
   std::size_t start_ = 0;           ///< Index in star_.link at which the link begins.
   Side side_ = Side::kInner;        ///< Which of the new triangles does not exist.
   std::size_t fan_first_ = 0;       ///< Place of corner vl, counted from start_.

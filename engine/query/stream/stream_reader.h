@@ -119,7 +119,7 @@ class StreamReader {
   std::uint64_t t0_vertices_ = 0;
   std::uint64_t numbering_ = 0;
   std::uint64_t splits_ = 0, splits_in_all_ = 0;
-  std::uint64_t digest_ = 0;  ///< Of the mesh.
+  std::uint64_t digest_ = 0;  ///< Digest of the mesh.
   Certificate certificate_;
   Tin tin_;
   std::optional<SplitCode> code_;

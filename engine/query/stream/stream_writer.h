@@ -54,12 +54,12 @@ struct StreamRequest {
 };
 
 struct StreamSummary {
-  std::uint64_t base_vertices = 0;  ///< Of T0, or of the mesh that the receiver has.
+  std::uint64_t base_vertices = 0;  ///< Vertices of T0, or of the mesh that the receiver has.
   std::uint64_t splits = 0;         ///< Sent.
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
   bool is_cut = false;            ///< At StreamRequest::most_bytes.
-  std::uint64_t split_bytes = 0;  ///< Of `bytes`, those of frames of splits, heads included.
+  std::uint64_t split_bytes = 0;  ///< Bytes of frames of splits, heads included.
   Certificate certificate;        ///< Once all is received, in the region asked for.
   QueryCost cost;
 };

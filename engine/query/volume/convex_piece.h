@@ -42,7 +42,7 @@ class ConvexPiece {
 
   [[nodiscard]] std::span<const MapPoint> corners() const { return {corners_.data(), size_}; }
   [[nodiscard]] bool is_empty() const { return size_ < 3; }
-  /// Of the triangle of corners 0, i and i + 1, square grid units; not negative.
+  /// Area of the triangle of corners 0, i and i + 1, square grid units; not negative.
   [[nodiscard]] double fan_area(std::size_t i) const {
     const MapPoint a = corners_[0], b = corners_[i], c = corners_[i + 1];
     return std::fmax(0.0, ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2);

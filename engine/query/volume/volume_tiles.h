@@ -45,7 +45,7 @@ struct VolumeSide {
   MapPoint border_reach;  ///< Twice that, grid units; infinite where nothing bounds it.
 
  private:
-  std::unique_ptr<const StarPredicate> stars_;  ///< Of places; null: everywhere.
+  std::unique_ptr<const StarPredicate> stars_;  ///< The places that are asked; null: everywhere.
 };
 
 /// The heights of a terrain's source, its base deviation added on either side; empty where there is
