@@ -56,7 +56,7 @@ class StarPredicate {
 };
 
 /// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
-/// interval. Of the stars of a page all are found that have such a triangle, and some others.
+/// interval. All stars of a page that have such a triangle are found, and some others.
 struct StarFilter {
   GridBox box{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   Interval heights = kAllHeights;  ///< Codes.
@@ -85,7 +85,7 @@ class AttributePredicate {
   /// True only when holds(r) is certain for every record r whose roi is not empty and lies in
   /// `all.roi`, whose heights lie in `all.heights` (or are empty), and whose error is at least
   /// `least_error`. False where that is not certain. Once false, it stays false while `all` grows
-  /// or `least_error` falls. Of a page for which it is true no record is asked, and a moving window
+  /// or `least_error` falls. No record is asked of a page for which it is true, and a moving window
   /// skips the pages on which its old and its new predicate agree (engine/query/refine).
   [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
                                            double least_error) const noexcept {

@@ -67,7 +67,7 @@ class PointDirectory {
 
   /// The pages that may hold living stars at each of some places.
   /// @param places  Within the bounds; each the least box around a point, so at most one unit wide.
-  /// @param filter  Of the level; nothing else of it is asked.
+  /// @param filter  Filter of the level; nothing else of it is asked.
   /// @param found   As many; each receives the pages of its place, those that probably hold it first.
   /// Cost: the nodes of the places' cells, each once, announced together.
   /// @throws Error corruption, io_error

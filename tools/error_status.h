@@ -14,7 +14,7 @@ inline constexpr int kExitDone = 0;
 /// answered.
 inline constexpr int kExitNegative = 1;
 
-/// Exit status and HTTP status of an error code. Of a service the file that is missing, damaged or
+/// Exit status and HTTP status of an error code. In a service the file that is missing, damaged or
 /// unreadable is its own, and what takes too much memory is the question.
 struct ErrorStatus {
   int exit;

@@ -21,7 +21,7 @@ class BuildObserver {
   virtual ~BuildObserver() = default;
 
   /// What the build expects to need: before it begins, and over points and TINs once more when they
-  /// have been sorted. Of a pipe only the latter, since it cannot be counted before it is read.
+  /// have been sorted. A pipe has only the latter, since it cannot be counted before it is read.
   virtual void plan(const BuildPlan& plan);
   /// How far it is; often.
   virtual void progress(const StageProgress& progress);

@@ -34,7 +34,7 @@ struct BegunParts {
                                      const std::string& output, const BuildOptions& options,
                                      const BuildResources& resources);
 
-/// One job. Of the join there is part 0 alone.
+/// One job. The join has part 0 alone.
 /// @param resources  `memory_bytes`, `threads`, `patience`, `files`, `stop` and `observer` count.
 /// @throws Error invalid_argument  a job of the phase before has told nothing yet, or there is no
 ///                                 such part; corruption  a file of another job is damaged: the

@@ -48,7 +48,7 @@ struct PlanRequest {
   SourceDisk disk;
 };
 
-/// @param tree  Of the terrain's tiles.
+/// @param tree  The tree of the terrain's tiles.
 /// @throws Error resource_exhausted  one tile does not fit into the memory (names the --memory and
 ///                                   the --tile that would), or the disk has less free than needed
 [[nodiscard]] BuildPlan plan_build(const TileTree& tree, const PlanRequest& request);

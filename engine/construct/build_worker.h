@@ -20,8 +20,7 @@ class TileTree;
 class BuildWorker {
  public:
   /// @param inputs, options  As those of the build.
-  /// @param resources        Of this process: `memory_bytes`, `patience`, `files`, `stop` and `observer`
-  ///     count.
+  /// @param resources        `memory_bytes`, `patience`, `files`, `stop` and `observer` count.
   /// @param note             What the directing process told TaskDriver::begin(), as a message.
   /// @throws Error as build(); invalid_argument  this process does not see the folders of the build, or
   ///     other inputs; corruption  what the directing process wrote is not there

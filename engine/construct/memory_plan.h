@@ -35,7 +35,7 @@ struct MemoryPlan {
 };
 
 /// @param asked  The limit that the caller sets; 0: default_memory().
-/// @param kind   Of the source: points and TINs are sorted before tiles are begun.
+/// @param kind   Kind of the source: points and TINs are sorted before tiles are begun.
 [[nodiscard]] MemoryPlan plan_memory(std::uint64_t asked, InputKind kind);
 
 /// Sets the size of GDAL's block cache, which all of the process shares, for as long as this lives.

@@ -34,8 +34,7 @@ struct CrsFacts {
   }
 };
 
-/// The facts of a WKT text. Of a text that GDAL does not understand: facts that hold the text
-/// alone.
+/// The facts of a WKT text. Where GDAL does not understand the text they hold the text alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
 
 /// Whether the same coordinates are the same place in both: the horizontal parts name one CRS,

@@ -18,7 +18,7 @@ class Announcer {
 
   /// Starts reading a range of an open file into the system's page cache. A hint: never fails, and
   /// the store reads the range in any case.
-  /// @param descriptor  Of the file; open as long as the store is.
+  /// @param descriptor  The file's; open as long as the store is.
   virtual void announce(int descriptor, std::uint64_t offset, std::uint64_t bytes) noexcept = 0;
 };
 

@@ -19,7 +19,7 @@ constexpr std::string_view kProblemJson = "application/problem+json";
 /// A request that is refused. Thrown where that is known, and answered where requests are.
 class Problem : public std::exception {
  public:
-  /// @param status  Of HTTP, 400 to 599.
+  /// @param status  Status of HTTP, 400 to 599.
   /// @param detail  One sentence: what is wrong, what was expected, what to do.
   Problem(unsigned status, std::string detail) : status_(status), detail_(std::move(detail)) {}
 

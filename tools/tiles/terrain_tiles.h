@@ -57,14 +57,14 @@ class TerrainTiles {
  public:
   /// @param terrain  A copy of it is kept, which shares the file.
   /// @param crs      crs_facts() of the terrain's store, or what is known better.
-  /// @param limits   Of finding out which tiles there are.
+  /// @param limits   Limits of finding out which tiles there are.
   /// @throws Error invalid_argument  as Globe
   ///               as TilePyramid
   TerrainTiles(const Terrain& terrain, const CrsFacts& crs, const TerrainTilesOptions& options,
                const QueryLimits& limits);
 
   /// layer.json. The template of tiles is relative to it.
-  /// @param version  Of the tiles' bytes; a part of their addresses, so in letters that these have.
+  /// @param version  Version of the tiles' bytes, a part of addresses: in letters that these have.
   [[nodiscard]] nlohmann::json layer_json(const std::string& version) const;
   /// A tile; none when there is no such tile.
   /// @throws Error as TilePyramid::mesh()

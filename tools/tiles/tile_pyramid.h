@@ -87,7 +87,7 @@ struct PyramidOptions {
 class TilePyramid {
  public:
   /// @param levels  Not empty.
-  /// @param limits  Of finding out which tiles hold surface.
+  /// @param limits  Limits of finding out which tiles hold surface.
   /// @throws Error as Terrain's questions
   /// Cost: some seconds for every million of `coverage_triangles`.
   TilePyramid(Terrain terrain, std::shared_ptr<const Globe> globe, const TileGrid& grid,

@@ -3,7 +3,7 @@
 // `verify --against`: the promises of a file, checked at every sample of its source.
 //
 // Independent of the builder: samples are read here, triangles are scanned over them in integers
-// here, distances to borders are measured here. Of the library only refine() is used,
+// here, distances to borders are measured here. The library's refine() alone is used,
 // since it is what is being verified.
 #pragma once
 

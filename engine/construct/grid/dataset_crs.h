@@ -34,7 +34,7 @@ class ReportedVerticalParts {
 /// The CRS as WKT2; "" where there is none, or one of those by which a GeoPackage says that nothing is
 /// known ("Undefined Cartesian SRS"). Where GDAL understands none, but the dataset or a file beside it
 /// names one: that text, which resolve_source_crs() warns of.
-/// @param srs       Of the dataset, or of the layer that is read; null where GDAL knows none.
+/// @param srs       That of the dataset or of the layer that is read; null where GDAL knows none.
 /// @param opening   That in which the dataset was opened.
 /// @param warnings  Receives what the text of a CRS says and GDAL passes over.
 [[nodiscard]] std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,

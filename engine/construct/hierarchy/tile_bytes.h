@@ -18,23 +18,23 @@ struct TileBytes {
   std::uint64_t fixed = 8U << 20;        ///< Any work, besides.
 
   /// A batch: its leaves one by one, then their join.
-  /// @param leaf_samples  Of its largest leaf.
+  /// @param leaf_samples  Samples of its largest leaf.
   [[nodiscard]] std::uint64_t of_batch(std::uint64_t leaf_samples) const noexcept {
     return fixed + leaf_samples * collapse_of_sample;
   }
   /// A tile of level 2 or more.
-  /// @param pushed_bytes  Of the files of its children.
+  /// @param pushed_bytes  Bytes of the files of its children.
   [[nodiscard]] std::uint64_t of_join(std::uint64_t pushed_bytes) const noexcept {
     return fixed + static_cast<std::uint64_t>(static_cast<double>(pushed_bytes) * join_of_pushed);
   }
   /// Closing a tile of level 2 or more.
-  /// @param segment_bytes  Of its file.
+  /// @param segment_bytes  Bytes of its file.
   [[nodiscard]] std::uint64_t of_close(std::uint64_t segment_bytes) const noexcept {
     return fixed +
            static_cast<std::uint64_t>(static_cast<double>(segment_bytes) * close_of_segment);
   }
   /// A batch in tightening, leaf by leaf.
-  /// @param leaf_samples  Of its largest leaf.
+  /// @param leaf_samples  Samples of its largest leaf.
   [[nodiscard]] std::uint64_t of_replay(std::uint64_t leaf_samples) const noexcept {
     return fixed + leaf_samples * replay_of_sample;
   }

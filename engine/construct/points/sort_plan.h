@@ -20,8 +20,8 @@ namespace ptin {
 
 /// Constants by which sorting is shared out. Tests choose smaller ones; results do not depend on them.
 struct SortSizes {
-  /// Points of a range of the curve: so many are sorted in memory at once. Of a large source there
-  /// are most_ranges ranges of more points each, which are sorted on disk where they have to be.
+  /// Points of a range of the curve: so many are sorted in memory at once. A large source has
+  /// most_ranges ranges of more points each, which are sorted on disk where they have to be.
   std::uint64_t range_points = std::uint64_t{1} << 17;
   std::uint64_t most_ranges = 256;
   /// Points that one task shares out among the ranges, and how many such tasks there are at most.

@@ -19,7 +19,7 @@ namespace ptin {
 
 /// A surface that a caller names, among those of a file: by its name, or by its place in the file as
 /// "#2", since several may have one name.
-/// @param number  Of the surface, from 1.
+/// @param number  Number of the surface, from 1.
 [[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
                                     std::uint64_t number);
 

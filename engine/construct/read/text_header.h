@@ -54,7 +54,7 @@ void join_units(std::vector<std::string>& names);
 /// names columns for x and y, from the left, and no more columns than there are. Words behind the
 /// names of x, y and z of all columns are taken for a remark.
 /// @param comments  The lines before the first row, with their marks.
-/// @param count     Of the columns.
+/// @param count     Number of the columns.
 /// @return  So many names, those that are not told empty; none where no comment tells any.
 [[nodiscard]] std::optional<std::vector<std::string>> header_in_comments(
     std::span<const std::string> comments, std::size_t count);

@@ -49,7 +49,7 @@ class ExternalSorter {
  public:
   /// @param memory  Folder and bytes for records. Where the bytes are fewer than kLeastRecords
   ///     records take, it takes these all the same.
-  /// @param stem    Of the names of its files, for errors.
+  /// @param stem    Stem of the names of its files, for errors.
   /// @param stop    Looked at where add() merges.
   explicit ExternalSorter(const ExternalMemory& memory, std::string stem = "sorted",
                           std::stop_token stop = {})

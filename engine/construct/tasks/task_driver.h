@@ -44,7 +44,7 @@ class TaskDriver {
   /// After an error nothing more begins. Tasks that were begun later than the one that met it are
   /// stopped, and those that were begun before it go on to their end, since their errors come first.
   /// @param worker  Does tasks in this process.
-  /// @param limits  Of this process.
+  /// @param limits  Limits of this process.
   /// @return The most bytes that were admitted at once in this process, by estimate.
   /// @throws Error cancelled  `stop` fired; and whatever a task, the schedule or give_back throws,
   ///     but for DamagedInput, of which the schedule is told: of several errors that of the task

@@ -49,7 +49,7 @@ class TaskList final : public TaskSchedule {
   /// @param known  Results of tasks that are not of the list.
   TaskList(const std::vector<TaskName>& tasks, Describe describe, TaskResults known);
   /// Tasks of reading a source, which do not depend on one another.
-  /// @param sizes  Of each, in a unit of the stage's own: for progress.
+  /// @param sizes  Size of each, in a unit of the stage's own: for progress.
   /// @param bytes  Memory that each takes at least, by estimate.
   /// @param plan   The facts of the file that they go by; none where there is no such file.
   TaskList(TaskKind kind, std::vector<std::uint64_t> sizes, std::uint64_t bytes,

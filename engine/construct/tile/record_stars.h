@@ -28,7 +28,7 @@ struct RecordStars {
 };
 
 /// Gives triangles their deaths.
-/// @param successors  Beside `corners`.
+/// @param successors  For each of `corners`.
 /// @param error_of    Called with the index of a successor; gives its final error. Cost: linear.
 template <class ErrorOf>
 void set_deaths(std::span<RingCorner> corners, std::span<const std::uint32_t> successors,
@@ -41,7 +41,7 @@ void set_deaths(std::span<RingCorner> corners, std::span<const std::uint32_t> su
 }
 
 /// Own records with their stars, when all errors are final.
-/// @param records  Of the tile: foreign ones and own ones.
+/// @param records  The tile's: foreign ones and own ones.
 /// @param first    The first own one; records without a star at the beginning of the own ones, those
 ///     of a first pass, get empty rings.
 /// Cost: linear. The arguments are used up.

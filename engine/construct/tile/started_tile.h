@@ -38,7 +38,7 @@ struct StartedTile {
 [[nodiscard]] GroundStep largest_step(const GroundMetric& ground, const GridBox& rows);
 
 /// Starts a leaf of points or of a TIN: its mesh is `part`, the triangles that are its own.
-/// @param hull    Of the whole terrain.
+/// @param hull    Hull of the whole terrain.
 /// @param ground  Null: the terrain has no voids.
 /// @param fixed_sides  As FixedGaps has them; empty: no breaklines.
 [[nodiscard]] StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,

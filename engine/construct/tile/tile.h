@@ -84,7 +84,7 @@ struct Tile {
 
 /// Sets everything else of a tile that holds the full TIN: `carried`, `vertex_state`, `has_voids`,
 /// the samples of its CornerWitnesses, and room for samples and records.
-/// @param witnesses  Beside tin.vertices. Null: no border is in reach, and all reaches are +infinity.
+/// @param witnesses  By vertices. Null: no border is in reach, and all reaches are +infinity.
 void start_tile(Tile& tile, const BorderWitnesses* witnesses);
 
 /// For each of tin.triangles the error at which it dies, that of its successor; kLivesOn for a

@@ -38,7 +38,7 @@ class TaskGraph {
   /// The files that a task reads, in the order of Task::inputs.
   [[nodiscard]] std::vector<std::pair<TileId, TileFile>> inputs_of(const TaskName& name) const;
   /// Memory that a task takes, in bytes, by estimate.
-  /// @param results  Of the tasks that write its inputs, at least.
+  /// @param results  Results of the tasks that write its inputs, at least.
   /// @throws Error resource_exhausted  a join needs more than there is
   [[nodiscard]] std::uint64_t bytes_of(const TaskName& name, const TaskResults& results) const;
   /// True when the results of all tasks that write its inputs are there.

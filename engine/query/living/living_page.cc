@@ -24,7 +24,7 @@ constexpr std::uint64_t kOneRingRun = (std::uint64_t{1} << layout::kRingRun) - 1
 struct Shapes {
   using Column = std::array<std::uint64_t, kRun>;
   Column degree, offset_bits, height_bits, death_bits, bit;  // NOLINT: written before read
-  Column living;  ///< Bit i: triangle i lives. Of the first 64.
+  Column living;  ///< Bit i: triangle i of the first 64 lives.
   unsigned common_bits;
 
   [[nodiscard]] std::uint64_t corner_bits(std::uint32_t k) const noexcept {

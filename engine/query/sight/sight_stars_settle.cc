@@ -112,7 +112,7 @@ void SightStars::narrow() {
 }
 
 /// The piece of the level by which the answer is most open; null when it is not.
-/// @param by_guess  Of the smallest clearance as it is, else of the smallest bound.
+/// @param by_guess  True: the smallest clearance as it is decides, else the smallest bound.
 const SightPiece* SightStars::wide_piece(bool by_guess) const {
   double most = kInfinity;
   for (const SightPiece& p : line_.pieces) {

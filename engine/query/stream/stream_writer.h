@@ -23,9 +23,9 @@
 
 namespace ptin {
 
-/// One serving that a receiver has had. Of the records for which `predicate` is true and which no
-/// earlier serving in the list brought, it is the first `splits` in the total order. So servings
-/// are listed in the order in which they were received.
+/// One serving that a receiver has had. It is the first `splits`, in the total order, of the
+/// records for which `predicate` is true and which no earlier serving in the list brought. So
+/// servings are listed in the order in which they were received.
 struct StreamHeld {
   PredicatePtr predicate;  ///< Null: everything.
   /// Fewer than there are: the serving was cut there.

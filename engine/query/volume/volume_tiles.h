@@ -54,7 +54,7 @@ struct VolumeSide {
 
 /// What a walk over tiles adds up. Threads: one owner.
 struct VolumeTotals {
-  /// @param most_heights  Of each of the sums.
+  /// @param most_heights  Most heights of each of the sums.
   VolumeTotals(double most_area, std::span<const double> most_heights, double longest_edge)
       : border{FixedSum(std::ldexp(longest_edge, 36)), 0} {
     for (const double most : most_heights) sums.emplace_back(most_area, most);
