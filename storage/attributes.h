@@ -47,9 +47,9 @@ class StarPredicate {
   StarPredicate& operator=(const StarPredicate&) = default;
   virtual ~StarPredicate() = default;
   [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
-  /// A box around a fixed set of points, where this test is true of a box that has one of them.
-  /// Where it is true of a box that is cut, it is true of one of the parts at least, each grown by
-  /// a unit. Other tests, and those of which nothing is known, have the box of everything.
+  /// A box around S, if this test means "the box meets a fixed set S"; else the box of everything.
+  /// Callers may then cut a box into pieces: if the test holds for the whole, it holds for at least
+  /// one piece grown by one unit.
   [[nodiscard]] virtual GridBox reach() const noexcept {
     return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   }

@@ -90,7 +90,7 @@ struct OrderedHeights {
                                    : OrderedHeights{0x007FFFFF, 0xFF800000};
 }
 
-/// The frame of a page, as its header tells it.
+/// The frame of a page, as its header gives it.
 class PageColumns {
  public:
   /// @param header  Checked: widths are none that a number does not need, and all that follows from

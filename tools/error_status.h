@@ -25,8 +25,9 @@ struct ErrorStatus {
 [[nodiscard]] ErrorStatus status_of(ErrorCode code) noexcept;
 
 /// What to report for the exception being handled: an Error as it is, std::bad_alloc as
-/// resource_exhausted, everything else as internal. What was told when memory_was_refused(), and
-/// blames a file or the program, is resource_exhausted too. REQUIRES: called inside a catch block.
+/// resource_exhausted, everything else as internal. What was reported when memory_was_refused(),
+/// and blames a file or the program, is resource_exhausted too. REQUIRES: called inside a catch
+/// block.
 /// @throws std::bad_alloc
 [[nodiscard]] Error current_error();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Who is told what a build does while it works.
+// The observer of a build: it hears what the build does while it works.
 #pragma once
 
 #include "engine/construct/build_plan.h"

@@ -14,7 +14,7 @@ namespace ptin {
 /// cgroup or resource limits allow where that is less.
 [[nodiscard]] std::uint64_t default_memory();
 
-/// Anonymous memory of this process now, bytes; 0 where the system does not tell.
+/// Anonymous memory of this process now, bytes; 0 where the system does not say.
 [[nodiscard]] std::uint64_t anonymous_bytes_now();
 
 /// How the memory of one build is shared out. Made once, before anything is read, and handed down.

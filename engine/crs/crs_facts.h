@@ -25,7 +25,7 @@ struct CrsFacts {
   std::string vertical_unit = "unknown";
 
   /// The short form for the headers of files: the code where there is one, else the WKT. That of a
-  /// CRS of three axes tells of its heights, too.
+  /// CRS of three axes says of its heights, too.
   [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
   /// The text of a vertical CRS; empty where there is none apart from horizontal_text().
   [[nodiscard]] std::string vertical_text() const {
@@ -45,7 +45,7 @@ struct CrsFacts {
 [[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
 
 /// The facts of the CRS that a store's metadata hold. The WKT is that of `crs` or `crs_wkt`; units
-/// that it does not tell are those of `crs` or `units`.
+/// that it does not state are those of `crs` or `units`.
 [[nodiscard]] CrsFacts crs_facts_of(const nlohmann::json& metadata);
 
 /// As crs_facts_of(metadata_of(store)).  @throws Error corruption as metadata_of()

@@ -50,7 +50,7 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] bool is_at_hand(const ByteRange& range) const noexcept override;
   void settle(IoCounters& counters) const noexcept override;
   /// Forgets what this thread announced and did not read. The server is not asked: each of its answers
-  /// tells whether the object is another one, and once one of them has, this does.
+  /// shows whether the object is another one, and once one of them has, this does.
   void check_unchanged() const override;
 
   /// Keeps blocks in the folder of the options from now on, and looks for them there.

@@ -91,7 +91,7 @@ class OgrSink final : public TinSink {
     feature_.reset();
     CPLErrorReset();
     const bool was_disk_full = is_disk_full(pending_.path());
-    GDALClose(dataset_.release());  // Has no result; GDAL's last error tells.
+    GDALClose(dataset_.release());  // Has no result; GDAL's last error says.
     if (CPLGetLastErrorType() >= CE_Failure || !is_complete())
       throw gdal_failure("cannot finish the output", pending_.path(), was_disk_full);
     pending_.publish();

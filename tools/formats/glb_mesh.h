@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the JSON of a GLB tells of one mesh with normals.
+// What the JSON of a GLB says of one mesh with normals.
 #pragma once
 
 #include <array>

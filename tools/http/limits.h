@@ -12,7 +12,7 @@
 
 namespace ptin::http {
 
-/// Every one is told to a client that goes beyond it, under its name here.
+/// Every one is named to a client that goes beyond it, under its name here.
 struct Limits {
   std::size_t request_line_bytes = std::size_t{32} << 10;  ///< Beyond: 414.
   std::size_t header_bytes = std::size_t{8} << 10;         ///< All header lines. Beyond: 431.

@@ -32,7 +32,7 @@ struct IoRequest {
   /// Where the second index is for as long as it is measured. Empty: beside the file.
   std::string temporary_folder;
   std::stop_token stop;
-  /// Called with a stage and its share done, 0 to 1; may throw. None: nobody is told.
+  /// Called with a stage and its share done, 0 to 1; may throw. None: it is not.
   std::function<void(const char* stage, double share)> progress;
 };
 
@@ -58,7 +58,7 @@ class Readings {
   [[nodiscard]] double mean_nodes() const;
   [[nodiscard]] double mean_asked_bytes() const;  ///< Pages and nodes that were read.
   [[nodiscard]] double mean_major_faults() const;
-  /// None where the system does not tell, or there is no reading.
+  /// None where the system does not say, or there is no reading.
   [[nodiscard]] std::optional<double> mean_device_bytes() const;
 
  private:
@@ -114,7 +114,7 @@ struct IoReport {
   std::optional<DeviceSpeed> device;
   std::string why_not_cold;       ///< Empty: cold figures are there.
   std::string why_no_uring;       ///< Empty: figures of io_uring are there.
-  bool has_device_bytes = false;  ///< The system tells what it reads from the device.
+  bool has_device_bytes = false;  ///< The system reports what it reads from the device.
   std::vector<OpeningFigures> opening;
   std::vector<QuestionFigures> questions;
   std::vector<ThreadFigures> threads;

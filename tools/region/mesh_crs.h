@@ -22,7 +22,7 @@ void set_crs(Mesh& mesh, const CrsFacts& crs, const StoreFacts& facts);
 /// are metres, by their lengths there.
 [[nodiscard]] LocalFrame frame_of(const StoreFacts& facts, const CrsFacts& crs);
 
-/// True when a format keeps to that frame, and an answer has to tell it.
+/// True when a format keeps to that frame, and an answer has to say so.
 /// @param path  Path of the output.
 /// @throws Error as mesh_format_of()
 [[nodiscard]] bool has_frame(const std::string& path);

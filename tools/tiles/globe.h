@@ -19,7 +19,7 @@ namespace ptin::tools {
 enum class VerticalDatum {
   kEllipsoidal,  ///< An ellipsoid, as viewers of the globe assume.
   kOrthometric,  ///< The sea's level or the like, up to 110 m away from the ellipsoid.
-  kUnknown,      ///< Nothing tells.
+  kUnknown,      ///< Nothing says.
 };
 
 /// What the CRS says about its heights.

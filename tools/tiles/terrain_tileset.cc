@@ -136,7 +136,7 @@ TerrainTileset::TerrainTileset(const Terrain& terrain, std::shared_ptr<const Glo
     : extent_(extent_of(*globe)),
       first_error_(wanted_error(terrain, *globe, extent_)),
       pyramid_(made_pyramid(terrain, std::move(globe), options, limits)) {
-  // A file that tells of no error as large as that of its only level has one level alone.
+  // A file that has no error as large as that of its only level has one level alone.
   first_error_ = std::max(first_error_, pyramid_.level(0).error);
 }
 

@@ -33,7 +33,7 @@ struct LevelsWanted {
 };
 
 /// The levels from 0 to the finest. That is the first one whose tiles would hold at most
-/// `mean_vertices` of the full TIN, on the average, and no finer than the file tells anything: it
+/// `mean_vertices` of the full TIN, on the average, and no finer than the file has detail: it
 /// is built to the file's finest error, or to a 16th of its share of the first one's, whichever is
 /// more. (It is more than its share only where the first level is finer than the file already: then
 /// that is the only level.)

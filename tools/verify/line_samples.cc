@@ -39,7 +39,7 @@ double stored(double height, const HeightEncoding& heights) {
   return heights.height_of_code(std::nearbyint((height - heights.offset) / heights.step));
 }
 
-/// Refuses files other than those that the store was built with, as far as their number tells.
+/// Refuses files other than those that the store was built with, as far as their number shows.
 void check_files(const LineInputs& inputs, const nlohmann::json& options) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);

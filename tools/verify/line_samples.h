@@ -52,8 +52,8 @@ class LineSamples {
   /// without heights that rounding to the grid decides.
   [[nodiscard]] bool holds(GridPoint p) const;
   [[nodiscard]] bool has_boundary() const { return has_boundary_; }
-  /// The boundary has no heights: it tells inside from outside, and has no samples; or breaklines have
-  /// none, which tell nothing.
+  /// The boundary has no heights: it divides inside from outside, and has no samples; or breaklines
+  /// have none, which say nothing.
   [[nodiscard]] bool is_flat() const { return is_flat_; }
   /// Takes a sample along: it divides the pieces that it lies on, at its own height.
   void divide_at(GridPoint p);

@@ -128,9 +128,9 @@ struct SampleResources {
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
-/// Refuses what is the source of another terrain as far as a short look tells: the grid and the extent
-/// of rasters; of points, that none of the first few thousand lies on the terrain. Cheap, whatever
-/// the size of the source.
+/// Refuses what is the source of another terrain as far as a short look shows: the grid and the
+/// extent of rasters; of points, that none of the first few thousand lies on the terrain. Cheap,
+/// whatever the size of the source.
 /// @throws Error as open_samples()
 void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
                      const SampleResources& resources);

@@ -378,7 +378,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
 }
 
 /// A file that left detail out does not have its lone points any more, so drop_lone_points() does not
-/// see them. The points around tell: all within four times the longest edge.
+/// see them. The points around decide: all within four times the longest edge.
 bool Verifier::may_be_left_out_as_lone(const SourceSample& sample) {
   if (!choices_.max_edge || facts_.base_error == 0 || source_.lines() != nullptr) return false;
   const GroundSteps steps = ground_steps(facts_.map, ground_, static_cast<double>(sample.y));

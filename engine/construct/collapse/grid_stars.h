@@ -26,7 +26,7 @@ class GridStars {
     VertexId w;
     double error;  ///< As CollapseChoice::error.
   };
-  /// What CollapseChooser chooses for `u`, up to rounding. Nothing where the table does not tell: on
+  /// What CollapseChooser chooses for `u`, up to rounding. Nothing where the table does not say: on
   /// the border of the box, beside a void or a witness, and where an error of nearly 0 wants exact
   /// arithmetic.
   /// Cost: at most eight residuals.

@@ -154,7 +154,7 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
   return e;
 }
 
-/// The first measure of a star of the full TIN of a raster; nothing where the table does not tell.
+/// The first measure of a star of the full TIN of a raster; nothing where the table does not say.
 std::optional<Simplifier::FirstMeasure> Simplifier::measure_on_grid(const GridStars& grid,
                                                                     VertexId u) const {
   const auto choice = grid.choose(u);

@@ -100,8 +100,8 @@ using Delaunay = CGAL::Delaunay_triangulation_2<GridKernel, DataStructure>;
 using Vertex_handle = Triangulation::Vertex_handle;
 using Face_handle = Triangulation::Face_handle;
 
-/// A constrained Delaunay triangulation that tells which vertices have new faces where an edge was
-/// forced. Edges must not cross; they may go through vertices and lie on one another.
+/// A constrained Delaunay triangulation that reports which vertices have new faces where an edge
+/// was forced. Edges must not cross; they may go through vertices and lie on one another.
 class ConstrainedDelaunay
     : public CGAL::Constrained_Delaunay_triangulation_2<
           GridKernel, DataStructure, CGAL::No_constraint_intersection_requiring_constructions_tag> {

@@ -16,10 +16,10 @@ namespace ptin {
 
 class GdalSession;
 
-/// Has GDAL tell the vertical parts of CRSs that some of its drivers leave out unless they are asked:
-/// those of GeoTIFF 1.0, of DTED, SRTM and their like, and of GML. The options are this thread's
-/// alone, and as before when the scope ends. To be there while a file is opened and while its CRS is
-/// first asked for, which any question may do.
+/// Has GDAL give the vertical parts of CRSs that some of its drivers leave out unless they are
+/// asked: those of GeoTIFF 1.0, of DTED, SRTM and their like, and of GML. The options are this
+/// thread's alone, and as before when the scope ends. To be there while a file is opened and while
+/// its CRS is first asked for, which any question may do.
 class ReportedVerticalParts {
  public:
   ReportedVerticalParts()

@@ -24,7 +24,7 @@ struct RecordBounds {
 
 /// What a leaf shows of one record of a segment: its error and deviation are at least `bounds`. The
 /// record is known by its vertex, since its place among the records follows from all collapses before
-/// it: a change elsewhere would move it, and change files that tell the same.
+/// it: a change elsewhere would move it, and change files that say the same.
 struct BoundsRaise {
   GridPoint vertex;  ///< VertexSplit::u of the record.
   RecordBounds bounds;

@@ -27,7 +27,7 @@ namespace ptin {
 namespace {
 
 /// The reach that a vertex has in a replay. Construction has charged the vertex itself, so it is
-/// not charged again: the reach is (nearly) 0, and its sign tells the class alone.
+/// not charged again: the reach is (nearly) 0, and its sign gives the class alone.
 float no_reach(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
 /// True where the samples of a leaf can be measured as blocks: over a raster with whole codes, without

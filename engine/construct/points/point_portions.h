@@ -30,7 +30,7 @@ struct PortionSizes {
 /// True for a pipe, a socket or a device: what is read of it is gone.
 [[nodiscard]] bool can_be_read_once_only(const std::string& path);
 
-/// Refuses files that do not go together. To be told of all files in their order.
+/// Refuses files that do not go together. Wants all files, in their order.
 class SourceAgreement {
  public:
   explicit SourceAgreement(const SourceOptions& options) : options_(&options) {}

@@ -27,7 +27,7 @@ struct PointWork {
   RunTasks run;  ///< Has the tasks done.
   std::stop_token stop{};
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< For what this process does by itself, bytes.
-  /// Told how far is what this process does by itself; may be empty.
+  /// Called with how far is what this process does by itself; may be empty.
   std::function<void(const StageProgress& progress)> progress{};
   PortionSizes portions{};
   SortSizes sorting{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the tasks that sort a source of points are told: its grid, its lines, and how it is shared out.
+// What the tasks that sort a source of points are given: its grid, its lines, and how it is shared
+// out.
 #pragma once
 
 #include <cstddef>

@@ -76,7 +76,7 @@ void RasterSource::Impl::take_unit(const std::string& declared, const std::strin
   }
 }
 
-/// Takes the unit of x and y that the first file tells beside a CRS. Degrees without a CRS have no
+/// Takes the unit of x and y that the first file states beside a CRS. Degrees without a CRS have no
 /// length over ground, so there is a warning.
 void RasterSource::Impl::take_plane_unit(const std::string& path) {
   const std::string& unit = mosaic.first().plane_unit;

@@ -23,9 +23,9 @@ namespace ptin {
 [[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
                                     std::uint64_t number);
 
-/// Reads LandXML as a stream, in any encoding that it names, and tells a derived class of its elements. A document type declaration
-/// is refused, and with it every entity that a file could define. Errors are kept and thrown outside
-/// of expat, which is C.
+/// Reads LandXML as a stream, in any encoding that it names, and hands its elements to a derived
+/// class. A document type declaration is refused, and with it every entity that a file could
+/// define. Errors are kept and thrown outside of expat, which is C.
 class LandXmlElements {
  public:
   LandXmlElements(const LandXmlElements&) = delete;

@@ -15,7 +15,7 @@
 namespace ptin {
 
 /// The points (and multipoints) of one layer as a stream. The height is the geometry's z, or the
-/// number in the attribute PointChoice::z_field, whose name may tell its unit
+/// number in the attribute PointChoice::z_field, whose name may give its unit
 /// (read/column_names.h). Left out are features without a geometry, hidden ones
 /// (read/hidden_features.h), features in which a chosen attribute is not set, and heights below -10^38,
 /// by which a shapefile says that it has none. The unit

@@ -44,7 +44,7 @@ class TextTable {
   ///                invalid_argument     it is a folder, or is_packed() and has no byte
   explicit TextTable(std::string path) : TextTable(std::move(path), PointPart{}) {}
   /// Reads a part of a text that is_packed() not: its rows, by the separator and the header of the
-  /// whole. Lines are told by their number in the whole.
+  /// whole. Lines are named by their number in the whole.
   /// @throws Error  QuotesInPart, also from next() and refuse()
   TextTable(std::string path, const PointPart& part);
   /// Reads `text`, which it keeps; `name` stands for the path in errors.

@@ -79,7 +79,7 @@ struct InputFile {
   ArrayFileFacts facts;
 };
 
-/// What a worker is told. The order of inputs is that of:
+/// What a worker is given. The order of inputs is that of:
 /// - read, share, sort: the plan of all of them;
 /// - join: the `pushed` of its children, in the order of TileTree::children();
 /// - tighten: the `pushed` of the root; the `segment` of each tile above, the root first;
@@ -93,12 +93,12 @@ struct Task {
   std::uint64_t bytes = 0;
   // What follows is of the process that does it, and in no message.
   std::stop_token stop{};
-  /// Told now and then how much is done, never less than before: bytes of a text, samples of a
-  /// raster or of whole leaves, points. May be empty.
+  /// Called now and then with how much is done, never less than before: bytes of a text, samples of
+  /// a raster or of whole leaves, points. May be empty.
   std::function<void(std::uint64_t done)> progress{};
 };
 
-/// What a worker tells when a task is done.
+/// What a worker reports when a task is done.
 struct TaskResult {
   std::array<ArrayFileFacts, kTileFiles> files{};  ///< By TileFile; 0 bytes: no such file.
   std::uint64_t page_bytes = 0;                    ///< Bytes of the pages themselves.

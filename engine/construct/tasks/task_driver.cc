@@ -114,7 +114,7 @@ void ThreadRun::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t byte
   }
 }
 
-/// Runs a task, and tells the schedule what came of it, unless the work is over by then.
+/// Runs a task, and reports to the schedule what came of it, unless the work is over by then.
 void ThreadRun::run_one(const Task& task, std::unique_lock<std::mutex>& lock) {
   std::optional<DamagedInput> damage;
   TaskResult result;

@@ -35,7 +35,7 @@ class TaskSchedule {
   virtual void done(const TaskName& name, const TaskResult& result) = 0;
   /// To be called when a task met a damaged input. By default this throws it.
   virtual void failed(const TaskName& name, const DamagedInput& damage);
-  /// Told how much of a task is done, as Task::progress. Threads: any number.
+  /// Notes how much of a task is done, as Task::progress. Threads: any number.
   virtual void progress(const TaskName& name, std::uint64_t done) = 0;
   /// Takes up what was done elsewhere, before anything is handed out. By default there is nothing.
   virtual void take_up(const TaskResults& results);
@@ -60,7 +60,7 @@ class TaskList final : public TaskSchedule {
   void done(const TaskName& name, const TaskResult& result) override;
   void progress(const TaskName& name, std::uint64_t done) override;
 
-  /// Tasks of reading: their price, and who is told how far they are, by one thread at a time.
+  /// Tasks of reading: their price, and who hears how far they are, from one thread at a time.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
   void set_bytes(std::uint64_t bytes) noexcept { bytes_ = bytes; }
   void tell(std::function<void(const StageProgress& progress)> tell) { tell_ = std::move(tell); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What tells when the border between surface and void moves, and how far (engine/DESIGN.md, section
+// What shows when the border between surface and void moves, and how far (engine/DESIGN.md, section
 // 3).
 #pragma once
 

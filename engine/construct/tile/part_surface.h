@@ -60,7 +60,7 @@ class PartSurface final : public FullSurface {
 
   void index_border();
   [[nodiscard]] VertexId vertex_at(GridPoint p) const noexcept;
-  /// Tells `visitor` where the edge from a to b goes within the part.
+  /// Reports to `visitor` where the edge from a to b goes within the part.
   template <class Visitor>
   void walk_over(GridPoint a, GridPoint b, Visitor& visitor) const;
   template <class Visit>

@@ -29,8 +29,8 @@ struct HierarchyOptions {
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   TaskDriver* driver = nullptr;  ///< Who runs the tasks; borrowed; null: threads of this process.
   std::stop_token stop;
-  /// Told the samples and leaves that are done, and all there are. Called by any thread, but never
-  /// twice at once. May be empty.
+  /// Called with the samples and leaves that are done, and all there are. Called by any thread, but
+  /// never twice at once. May be empty.
   std::function<void(const StageProgress& progress)> progress;
 };
 

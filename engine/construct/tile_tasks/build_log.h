@@ -21,7 +21,7 @@ namespace ptin {
 /// Collects notes of finished work, and writes them to the manifest at checkpoints. A checkpoint
 /// syncs the output and the temporary files that the notes name, then appends the notes to the
 /// manifest, then removes the files that are superfluous by these notes. So the manifest never
-/// tells of work that is not durable. After a crash the work since the last checkpoint is done
+/// speaks of work that is not durable. After a crash the work since the last checkpoint is done
 /// again.
 /// Threads: one at a time.
 class BuildLog {

@@ -43,7 +43,7 @@ class TaskGraph {
   [[nodiscard]] std::uint64_t bytes_of(const TaskName& name, const TaskResults& results) const;
   /// True when the results of all tasks that write its inputs are there.
   [[nodiscard]] bool can_be_done(const TaskName& name, const TaskResults& results) const;
-  /// The task as a worker is told, but for Task::offset.
+  /// The task as a worker is given it, but for Task::offset.
   /// @throws Error as bytes_of()
   [[nodiscard]] Task describe(const TaskName& name, const TaskResults& results) const;
 

@@ -118,7 +118,7 @@ Task TileSchedule::take() {
 // What follows.
 
 void TileSchedule::done(const TaskName& name, const TaskResult& result) {
-  progress(name, ~std::uint64_t{0});  // another process does not tell how far it is
+  progress(name, ~std::uint64_t{0});  // another process does not report how far it is
   running_.erase(name);
   const bool was_again = again_.erase(name) > 0;
   if (name.kind == TaskKind::kPlace) {

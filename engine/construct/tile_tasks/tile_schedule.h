@@ -30,7 +30,7 @@ namespace ptin {
 /// What failed on a damaged input comes again, after the task that wrote the input.
 class TileSchedule final : public TaskSchedule {
  public:
-  /// Told the samples and leaves that are done, by one thread at a time; may be empty.
+  /// Called with the samples and leaves that are done, by one thread at a time; may be empty.
   using Tell = std::function<void(const StageProgress& progress)>;
   /// Takes up what the log says is done. All arguments must outlive the schedule.
   TileSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,

@@ -21,7 +21,7 @@ void check_border(std::span<const GridPoint> positions, std::span<const BorderEd
 
 /// The triangles that fill the convex hull around and between surface triangles: those faces of a
 /// constrained Delaunay triangulation of the border's vertices, with the border's edges kept, that
-/// the surface does not cover. How often it covers a face, the winding number of the border tells.
+/// the surface does not cover. The winding number of the border says how often it covers a face.
 /// @param positions  Positions of the vertices, by id.
 /// @param border     In ascending order of (from, to).
 /// @param faults     Its `covered` counts the faces that are covered more than once.

@@ -51,7 +51,7 @@ struct Star {
   LivingStar star;
   std::uint32_t error;     ///< Short bits.
   bool is_closed;          ///< As has_closed_ring().
-  std::int64_t height;     ///< Ordered; of u, or what the corners' heights are told from.
+  std::int64_t height;     ///< Ordered; of u, or what the corners' heights are relative to.
   std::int64_t low, high;  ///< Limits of the corners' heights.
 };
 

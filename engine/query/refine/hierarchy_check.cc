@@ -403,7 +403,7 @@ float HierarchyCheck::death_of(TriangleId t, const VertexSplit& r, const Star& s
   for (const RingCorner& c : ring) {
     if (own < 3 && c.position == corner[(own + 1) % 3]) return c.death;
   }
-  return kLivesOn;  // its star is another than its split makes, which is told of the maker
+  return kLivesOn;  // its star is another than its split makes, which is reported of the maker
 }
 
 void HierarchyCheck::count_deaths(const CellRecord& r) {

@@ -87,7 +87,7 @@ struct SightResult {
   /// Most that the surface may deviate where the line is undecided; 0 when it is decided, infinite
   /// where the budget left the line unread.
   double certified_deviation = 0.0;
-  bool exact = false;  ///< All that the result tells holds of the source.
+  bool exact = false;  ///< All that the result says holds of the source.
   QueryCost cost;
 };
 
@@ -107,7 +107,7 @@ struct SightWay {
 
 /// Answers pairs one after the other. It keeps a coarse level of the whole terrain in memory: where
 /// no full surface can lie so low that the line passes above it, a verdict reads nothing, and
-/// elsewhere the level tells where to look first.
+/// elsewhere the level says where to look first.
 ///
 /// The path is straight in the file's CRS, and distances are proportional along it. (In a
 /// geographic CRS that is true to a thousandth at 100 km and middle latitudes.) Threads: one owner;

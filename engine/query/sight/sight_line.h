@@ -116,7 +116,8 @@ class SightLine {
   /// Where pieces of the full TIN are there beside those of a level of detail, they stand in the
   /// place of these. REQUIRES: order_pieces() came before.
   void prefer_exact();
-  /// Decides a piece of surface in rationals, where its bounds do not tell and nothing is left out.
+  /// Decides a piece of surface in rationals, where its bounds do not decide and nothing is left
+  /// out.
   void decide_exactly(SightPiece& piece, const LinePoint& from, const LinePoint& to) const;
   /// Looks at a point in which the line meets the closed surface beside a void, or from outside of
   /// the domain. An end of the line there does not hide the line.
@@ -128,7 +129,7 @@ class SightLine {
   /// True when a vertex hides the line alone: the line passes it between voids, or touches it from
   /// outside of the domain, and the vertex lies above the line.
   [[nodiscard]] bool is_touched_from_below() const noexcept { return touched_ <= 1.0; }
-  /// True when a vertex may hide the line so, and what was left out would tell.
+  /// True when a vertex may hide the line so, and what was left out would decide.
   [[nodiscard]] bool may_be_touched_from_below() const noexcept { return may_be_touched_; }
   /// Share of the way of the first vertex that hides the line so; above 1 when there is none.
   [[nodiscard]] double touched_at() const noexcept { return touched_; }

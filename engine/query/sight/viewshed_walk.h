@@ -33,7 +33,7 @@ namespace ptin {
   return false;
 }
 
-/// Tells what an eye sees by walking to each target. Borrows all for its life. Threads: several may
+/// Finds what an eye sees by walking to each target. Borrows all for its life. Threads: several may
 /// ask.
 class WalkedView {
  public:

@@ -69,7 +69,7 @@ class StreamReader {
   /// What the mesh is certified for in the region that the stream was asked for; at least
   /// base_error.
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
-  /// Facts of the file from which the stream came, as far as a stream tells them: map, heights,
+  /// Facts of the file from which the stream came, as far as a stream has them: map, heights,
   /// bounds, base.
   [[nodiscard]] const StoreFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const std::string& metadata() const noexcept { return metadata_; }

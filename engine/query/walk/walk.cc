@@ -250,7 +250,7 @@ void LineWalk::begin_on_edge(TriangleId t, int edge_side) {
   const VertexId b = triangle.v[previous_corner(edge_side)];
   const Int128 turn_a = turn(a);
   if (turn_a == 0) {
-    // p lies strictly between a and b, so one axis on which the line moves tells which is ahead.
+    // p lies strictly between a and b, so one axis on which the line moves shows which is ahead.
     const Spot ahead = spot_of(tin_->position(b));
     const bool to_b =
         q_.x != p_.x ? (q_.x > p_.x) == (ahead.x > p_.x) : (q_.y > p_.y) == (ahead.y > p_.y);
@@ -279,7 +279,7 @@ void LineWalk::enter_through(TriangleId t, int edge_side) {
 }
 
 /// Finds the border edge through which the line comes in, among those that p sees. Goes round the
-/// whole border, since only a test of each edge tells whether p sees it.
+/// whole border, since only a test of each edge shows whether p sees it.
 void LineWalk::begin_outside(const Place& place) {
   TriangleId t = place.triangle;
   int edge_side = place.index;
