@@ -18,7 +18,8 @@
 // 4. compact_when_sparse() comes before a vertex is taken, when nobody holds an id but state_,
 //    target_ and the queue, which get the new ones.
 // 5. prefetch_upcoming() asks for the memory of the stars whose turn is near; it decides nothing.
-// With witnesses (no full surface) the loop is the same, but lists are cut down at each compaction.
+// With carried samples (no full surface) the loop is the same, but lists are cut down at each
+// compaction.
 #include "engine/construct/collapse/simplify.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ class Simplifier {
   Tile& tile_;
   const SimplifyOptions& options_;
   const FullSurface* full_;
-  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction: no `full`.
+  bool is_capped_;             ///< Lists are cut down at each compaction: no `full`.
   std::size_t first_samples_;  ///< Samples in all lists at the beginning.
   RecordMaker maker_;
   CollapseChooser chooser_;

@@ -43,8 +43,8 @@ struct InnerSegment {
   /// SegmentBounds::set_foreign().
   std::vector<RecordBounds> foreign;
   std::vector<std::uint32_t> child_begin;  ///< Where each child's begin in `foreign`.
-  /// In the order of the collapses. Until tightening `error` is the own part over witnesses, and
-  /// `deviation` is 0.
+  /// In the order of the collapses. Until tightening `error` is the own part over carried samples,
+  /// and `deviation` is 0.
   std::vector<VertexSplit> records;
   /// Stars of the own records. Triangles name successors by number: own records saturate over
   /// these.

@@ -141,7 +141,7 @@ void Replay::take_samples(const Tile& leaf) {
       samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].reach});
     }
   }
-  for (const CarriedState& carried : leaf.carried) {  // witnesses of its triangles
+  for (const CarriedState& carried : leaf.carried) {  // and witnesses at corners
     const auto own = leaf.samples.samples(carried.samples);
     samples.insert(samples.end(), own.begin(), own.end());
   }
@@ -259,8 +259,9 @@ RecordBounds Replay::measure_samples(double gap) {
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
 }
 
-/// What the record says already, its error over witnesses, is not looked for again. Some sample has
-/// that error, in this leaf or in another one, so the deviation of the record is that at least.
+/// What the record says already, its error over carried samples, is not looked for again. Some
+/// sample has that error, in this leaf or in another one, so the deviation of the record is that at
+/// least.
 RecordBounds Replay::measure_blocks(const VertexSplit& record, double gap) {
   const HeightEncoding& heights = tile_.units.heights;
   const PlaneBlocks::Centre u{record.u, heights.code(record.height), star_.star.closed};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Tightening: true errors and deviations for records that were ordered by witnesses
+// Tightening: true errors and deviations for records that were ordered by carried samples
 // (engine/DESIGN.md, section 5.7).
 #pragma once
 

@@ -10,7 +10,7 @@
 //    `exported` remembers which they are, for tightening. All of them, and the stars, are
 //    handed back beside the pushed tile.
 // 3. Triangles are copied by these numbers, with all their samples (from a leaf) or with a few
-//    witnesses (from any other tile). The old tile is freed.
+//    carried samples (from any other tile). The old tile is freed.
 // Between the steps the pushed tile lies in memory (leaves) or in a file
 // (construct/hierarchy/tile_files.h).
 //

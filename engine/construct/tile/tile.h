@@ -63,7 +63,7 @@ struct MeasureUnits {
 };
 
 /// A tile: everything that a collapse reads and changes. A parent gets the TIN, `carried` with the
-/// records that it names, and samples or witnesses (construct/hierarchy/tile_push.h).
+/// records that it names, and all samples or carried ones (construct/hierarchy/tile_push.h).
 struct Tile {
   Tin tin;
   std::vector<CarriedState> carried;      ///< For each of tin.triangles.
