@@ -103,7 +103,7 @@ static_assert(sizeof(ErrorBinEntry) == 24);
 
 /// Describes a page (in a leaf) or a node (above).
 struct NodeEntry {
-  std::int32_t min_x, min_y, max_x, max_y;                      //  0  of the regions of influence
+  std::int32_t min_x, min_y, max_x, max_y;                      //  0  of the rois
   std::int32_t star_min_x, star_min_y, star_max_x, star_max_y;  // 16  of the stars
   std::uint32_t height_lo, height_hi;                           // 32  saturated, as HeightEncoding
   std::uint32_t star_height_lo, star_height_hi;                 // 40  of the stars' vertices

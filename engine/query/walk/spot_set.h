@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicate of a batch of points: true when the region of influence holds one of them.
+// The predicate of a batch of points: true when the roi of a record holds one of them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace ptin {
 
-/// True for records whose region of influence holds at least one of some spots and whose error is
+/// True for records whose roi holds at least one of some spots and whose error is
 /// above a tolerance. Exact, so monotone. Threads: immutable.
 class SpotSet final : public AttributePredicate {
  public:
