@@ -83,7 +83,7 @@ class Isolines {
 /// lines are joined exactly across tiles.
 /// @throws Error invalid_argument    levels, region or tolerance mean nothing, or the region has no
 ///                                   inside; as Detail
-///               resource_exhausted  more than most_lines lines, found before any is handed out; a
+///               resource_exhausted  more than most_lines lines, told before any is handed out; a
 ///                                   tile that cannot be made small enough; no room for points
 ///               corruption, io_error, cancelled
 /// Cost: the stars whose heights hold a level; O(n log n) in the lines. With `vertices` the cost of

@@ -18,7 +18,7 @@ namespace ptin {
 /// Most levels that one question may have.
 inline constexpr std::size_t kMostLevels = 65536;
 
-/// Ascending numbers, the steps, that give how many of them lie at or below a value. A table says
+/// Ascending numbers, the steps, that tell how many of them lie at or below a value. A table says
 /// where to begin, and a few comparisons finish: every record and vertex asks. Threads: immutable.
 class Ladder {
  public:

@@ -18,7 +18,7 @@
 namespace ptin {
 
 /// Reads pages of stars, and hands out their triangles that live at a level: at once, but for those
-/// that the level's last error alone does not decide (LivingTies), which come at the end.
+/// of which the level's last error alone does not tell (LivingTies), which come at the end.
 /// Threads: one owner.
 class LevelStars {
  public:
@@ -49,7 +49,7 @@ class LevelStars {
   [[nodiscard]] const LivingStars& living() const noexcept { return living_; }
   /// Calls visit(const LivingTriangle&) for triangles of T0, or of the page, whose box is wanted:
   /// wants(const GridBox&), and that are wanted: is_wanted(const LivingTriangle&). Those of which the
-  /// level does not decide are set aside.
+  /// level does not tell are set aside.
   template <class Wants, class IsWanted, class Visit>
   void visit_t0(const Wants& wants, const IsWanted& is_wanted, const Visit& visit) {
     visit_living(store_->t0(), detail_->level(), [&](const LivingTriangle& t) {
@@ -66,7 +66,7 @@ class LevelStars {
       }
     });
   }
-  /// The same where the box decides alone.
+  /// The same where the box tells alone.
   template <class Wants, class Visit>
   void visit_t0(const Wants& wants, const Visit& visit) {
     visit_t0(
@@ -88,7 +88,7 @@ class LevelStars {
     ties_.abandon(visit);
   }
 
-  /// How many triangles were set aside; the bytes of them, and of what decides on them.
+  /// How many triangles were set aside; the bytes of them, and of what tells of them.
   [[nodiscard]] std::size_t count_aside() const noexcept { return ties_.count(); }
   [[nodiscard]] std::uint64_t bytes_aside() const noexcept { return ties_.bytes(); }
 

@@ -57,7 +57,7 @@ class LivingReader {
       : store_(terrain.store()), heights_(store_.facts().heights), stars_(store_, detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
-  /// of the file, then those that the level decides last. False when the visitor ended it.
+  /// of the file, then those that the level tells last. False when the visitor ended it.
   /// @throws Error corruption, io_error, cancelled; resource_exhausted where a number of vertices cuts
   ///     between more records of one error than fit the memory; what the visitor throws
   /// Cost: a search of the index and the pages with such stars, announced together. Memory: one

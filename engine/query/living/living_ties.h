@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Ties of a level that is a number of vertices: triangles that their deaths do not decide.
+// Ties of a level that is a number of vertices: triangles of which their deaths do not tell.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline void set_level(const Detail& detail, StarFilter& filter) noexcept {
 
 /// Sets triangles aside that die at the error E of the last record that a level keeps. Such a
 /// triangle is gone exactly when it stands in the fan of a record of error E that the level keeps,
-/// which the star of that record shows. The star's box holds the triangle, and its heights those of
+/// which the star of that record tells. The star's box holds the triangle, and its heights those of
 /// the triangle: so a search that has read all that may hold the triangle has read the star.
 /// A level of error sets nothing aside. Threads: one owner.
 class LivingTies {

@@ -27,7 +27,7 @@ struct LivingTriangle {
   };
   std::array<Corner, 3> corner;  ///< Counter-clockwise.
   bool is_void = false;
-  bool is_tied = false;  ///< It dies at the level's own error: LivingTies decides whether it lives.
+  bool is_tied = false;  ///< It dies at the level's own error: LivingTies tells whether it lives.
   /// Most vertical distance to the full surface where both are surface, height's unit; +infinity
   /// for a triangle of T0.
   double deviation = kInfinity;

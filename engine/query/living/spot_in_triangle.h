@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The place of a spot in one triangle, from the triangle alone.
+// The place of a spot in one triangle, told from the triangle alone.
 #pragma once
 
 #include <array>

@@ -10,7 +10,7 @@
 namespace ptin {
 
 /// Which records of a run may have a star that a filter asks for, as far as box, level and heights
-/// show: bit k for record k of the run. Nothing is checked.
+/// tell: bit k for record k of the run. Nothing is checked.
 /// @param is_within  All stars of the page lie in the filter's box.
 [[nodiscard]] std::uint64_t chosen_stars(const RecordPage& page, const LivingFilter& filter,
                                          bool is_within, PageRun& run) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a straight line and a triangle share, from the triangle alone.
+// What a straight line and a triangle share, told from the triangle alone.
 #pragma once
 
 #include <optional>

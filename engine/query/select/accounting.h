@@ -46,7 +46,7 @@ class QueryContext {
     }
   }
 
-  /// @param bytes  Most bytes that the query will hold, as far as the index can say.
+  /// @param bytes  Most bytes that the query will hold, as far as the index can tell.
   /// @throws Error resource_exhausted when `bytes` exceeds the limit; names both figures and
   /// `export`.
   void admit(std::uint64_t bytes) const {

@@ -47,7 +47,7 @@ class Detail {
   /// Every record of error at or below this is left out; negative: none are. Questions put it into
   /// the predicate by which they select pages and records, and call keep() afterwards.
   [[nodiscard]] double tolerance() const noexcept { return tolerance_; }
-  /// True when tolerance() alone decides what is left out. False where a number of vertices cuts
+  /// True when tolerance() alone tells what is left out. False where a number of vertices cuts
   /// between records of one error.
   [[nodiscard]] bool is_by_error() const noexcept { return !last_; }
   /// The error up to which triangles have died at the level: tolerance(), or the error of the last

@@ -42,7 +42,7 @@ class OverlayMesh final : private LivingVisitor {
       : reader_(terrain, detail), map_(map) {}
 
   /// Takes in the triangles of `place` that meet `near`, a box of the other grid. False when that
-  /// takes more than `most_bytes`; found out before pages are read where the index shows it.
+  /// takes more than `most_bytes`; found out before pages are read where their records tell.
   /// @throws Error as LivingReader::read()
   [[nodiscard]] bool gather(const LivingPlace& place, const GridBox& near, std::uint64_t most_bytes,
                             QueryContext& context);

@@ -217,7 +217,7 @@ std::vector<double> RegionCutter::slab_ends(const Extent& extent, const Edges& l
 }
 
 /// @param local  Edges in the extent of the piece.
-/// @param left   Edges left of it, which decide whether it begins inside.
+/// @param left   Edges left of it, which tell whether it begins inside.
 void RegionCutter::cut_in_slab(const ConvexPiece& piece, double low, double high,
                                const Edges& local, const Edges& left,
                                std::vector<ConvexPiece>& parts) {

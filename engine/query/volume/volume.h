@@ -47,7 +47,7 @@ struct CertifiedVolume {
 /// cut is where it is above 0, fill where it is below. Areas are those of the plane over ground.
 ///
 /// Volumes and areas are exact integrals over the triangles, or over those of the overlay of both
-/// meshes, and over their parts in the region; what rounding can have changed is stated. They are
+/// meshes, and over their parts in the region; what rounding can have changed is told. They are
 /// added in fixed point, so every bit is the same for any memory, tiles and number of threads.
 struct VolumeResult {
   CertifiedVolume cut, fill, net;  ///< `net` is cut less fill.
@@ -83,8 +83,8 @@ struct VolumeResult {
 [[nodiscard]] VolumeResult volume(const OpenedTerrain& terrain, const VolumeRequest& request);
 
 /// The volumes of several levels, in their order: each bit for bit what volume() gives for it, all of
-/// them from one pass over the triangles, whose cost each result states. `request.level` is not
-/// looked at.
+/// them from one pass over the triangles, whose cost each result tells. `request.level` is not looked
+/// at.
 /// @throws Error as volume(); invalid_argument  no level; another terrain besides
 ///               resource_exhausted  the sums of so many levels do not fit the memory
 /// Cost: as volume(), with the sums of each triangle once a level. Memory: a KiB a level and thread.
