@@ -63,7 +63,7 @@ std::optional<PageCounts> count_pages(std::span<const std::byte> pages,
       }
       counts.records += page.records();
     }
-  } catch (const Error&) {  // a page of which nothing can be said
+  } catch (const Error&) {  // a page of which nothing can be told
     return std::nullopt;
   }
   counts.bins = errors.bins();

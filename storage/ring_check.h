@@ -16,7 +16,7 @@ class RingCheck {
   struct Corner {
     std::int64_t x = 0, y = 0;  ///< From u. Within 32 bits.
     bool has_height = false;
-    bool is_void = false;  ///< Whether the triangle with u and the next corner is void.
+    bool is_void = false;  ///< Of the triangle with u and the next corner.
   };
 
   explicit RingCheck(bool u_has_height) noexcept : u_has_height_(u_has_height) {}

@@ -24,7 +24,7 @@ namespace ptin::build_internal {
 
 namespace {
 
-/// The version of the temporary files: to be raised when their bytes mean something else.
+/// Of the temporary files: to be raised when their bytes mean something else.
 constexpr int kTemporaryFormat = 9;
 
 /// The key of a line of the manifest: the sorted source that an earlier line names is damaged.

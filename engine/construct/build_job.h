@@ -56,7 +56,7 @@ struct Job {
   /// Hands a plan, or progress, to the observer; does nothing where there is none.
   void tell(const BuildPlan& plan) const;
   void tell(const StageProgress& progress) const;
-  /// A function that reports to the observer how far the stage `name` is. Borrows the job.
+  /// A function that tells the observer how far the stage `name` is. Borrows the job.
   [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
       const char* name) const;
   /// The same for stages that are named in each call.

@@ -55,7 +55,7 @@ struct BuildOption {
   /// Its key in the metadata; null: the name, with "_" for "-".
   const char* key = nullptr;
   const char* alias = nullptr;               ///< Another name on the command line.
-  NumberRange range = NumberRange::kFinite;  ///< Range of a number, where `unit` is not null.
+  NumberRange range = NumberRange::kFinite;  ///< Of a number, where `unit` is not null.
   const char* unit = nullptr;                ///< In which numbers are, for refusals; "" for none.
   const char* noun = nullptr;                ///< A number: what it is called in a refusal.
   unsigned inputs = kAll;

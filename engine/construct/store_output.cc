@@ -87,7 +87,7 @@ namespace {
 struct SegmentFacts {
   std::uint64_t records, void_records;
   std::uint64_t bins, descriptors;
-  RecordBounds worst;  ///< Bounds of what was left out.
+  RecordBounds worst;  ///< Of what was left out.
   std::uint32_t max_rank;
   std::uint32_t reserved;
 };
@@ -126,7 +126,7 @@ StorePacker::StorePacker(const BuildOptions& options, const TerrainFrame& frame,
 PreparedSegment StorePacker::prepare(StarredRecords& records) const {
   detail_.add_rounding(records);
   SegmentFacts facts{};
-  // Counts of the source's TIN: before records are left out.
+  // Of the source's TIN: before records are left out.
   facts.void_records = static_cast<std::uint64_t>(
       std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));

@@ -13,7 +13,7 @@ namespace ptin {
 
 struct CrsFacts {
   std::string wkt;   ///< WKT2 on one line; empty when unknown.
-  std::string name;  ///< Name of the horizontal part.
+  std::string name;  ///< Of the horizontal part.
   std::string code;  ///< "EPSG:32611" of the horizontal part; empty when it has none.
   bool has_third_axis =
       false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.
@@ -34,7 +34,8 @@ struct CrsFacts {
   }
 };
 
-/// The facts of a WKT text. Where GDAL does not understand the text they hold the text alone.
+/// The facts of a WKT text. Of a text that GDAL does not understand: facts that hold the text
+/// alone.
 [[nodiscard]] CrsFacts crs_facts(const std::string& wkt);
 
 /// Whether the same coordinates are the same place in both: the horizontal parts name one CRS,
@@ -45,7 +46,7 @@ struct CrsFacts {
 [[nodiscard]] nlohmann::json metadata_of(const StoreFile& store);
 
 /// The facts of the CRS that a store's metadata hold. The WKT is that of `crs` or `crs_wkt`; units
-/// that it does not state are those of `crs` or `units`.
+/// that it does not tell are those of `crs` or `units`.
 [[nodiscard]] CrsFacts crs_facts_of(const nlohmann::json& metadata);
 
 /// As crs_facts_of(metadata_of(store)).  @throws Error corruption as metadata_of()

@@ -122,7 +122,7 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {},
                                   AnswerBy by = AnswerBy::kStars) const;
   /// Sight lines of many pairs.
-  /// @param coarse_records  That of SightSolver's constructor; by splits there is no coarse level.
+  /// @param coarse_records  As for the constructor of SightSolver; by splits there is no coarse level.
   [[nodiscard]] SightSolver sight_lines(const SightRequest& request,
                                         std::uint64_t coarse_records = SightSolver::kCoarseRecords,
                                         AnswerBy by = AnswerBy::kStars) const;

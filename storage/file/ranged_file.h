@@ -23,7 +23,7 @@
 namespace ptin {
 
 struct RangedFileOptions {
-  /// Memory for what was read and used last; at least kLeastCacheBytes.
+  /// Of what was read, the part used last is kept in memory; at least kLeastCacheBytes.
   std::uint64_t cache_bytes = std::uint64_t{64} << 20;
   /// Where what was read is kept on disk, for the next opening too (sparse_cache.h); empty: nowhere.
   std::string cache_folder;

@@ -28,7 +28,7 @@ class PixelGrid {
  public:
   static constexpr int kLatticeBits = 20;  ///< Positions are whole multiples of 2^-20.
 
-  /// @param facts   Facts of the terrain; borrowed for the life of the grid.
+  /// @param facts   Of the terrain; borrowed for the life of the grid.
   /// @param size    Width and height of a pixel, in map units, > 0.
   /// @param window  Only pixels with their centres in this closed window; none means the terrain's
   ///                box.

@@ -277,7 +277,7 @@ class RasterWriter {
   std::int64_t blocks_done_ = 0;
   WrittenRaster written_;
   std::vector<double> values_;
-  std::vector<GridNormal> normals_;  ///< For each of `values_`; empty when these are heights.
+  std::vector<GridNormal> normals_;  ///< Beside `values_`; empty when these are heights.
 };
 
 /// Refuses options that the driver does not know; GDAL itself only warns of them.

@@ -261,7 +261,7 @@ std::uint32_t CutMesh::cross_edge(TriangleId t, int side, LatticePoint v, Lattic
   const std::uint32_t b = triangles[t].v[previous_corner(side)];
   const CutNode node = crossing(a, b, v, target, segment);
   if (!can_split_edge(t, side, node.at)) {
-    // The crossing is closer to an end of the edge than the lattice can show: the way goes through
+    // The crossing is closer to an end of the edge than the lattice can tell: the way goes through
     // that end.
     const double to_a = std::abs(lattice_orient(v, target, at(a)));
     const double to_b = std::abs(lattice_orient(v, target, at(b)));

@@ -110,7 +110,7 @@ std::vector<Serving> servings_of(const std::string& text) {
 
 namespace {
 
-/// Facts by which a receiver computes lengths over ground without a library of projections.
+/// Facts by which a receiver tells lengths over ground without a library of projections.
 nlohmann::json ground_json(const CrsFacts& crs) {
   const GroundFacts ground = ground_facts_of(crs);
   nlohmann::json json = {{"geographic", ground.geographic},

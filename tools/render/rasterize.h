@@ -20,7 +20,7 @@ struct TerrainRaster {
   int height = 0;
   std::vector<float> heights;  ///< Only where `classes` says kSurface.
   std::vector<PixelClass> classes;
-  /// The page of each pixel's triangle; empty unless the TIN names the pages of its triangles.
+  /// The page of each pixel's triangle; empty unless the TIN tells the pages of its triangles.
   std::vector<std::uint32_t> pages;
 
   [[nodiscard]] std::size_t place(int x, int y) const {

@@ -23,7 +23,7 @@ namespace ptin::tools {
 
 /// Sorted samples: add() all samples, sort() once, then count() and read(). One thread.
 ///
-/// A key says where a sample lies: the bounds are halved again and again, as halves_of() does,
+/// A key tells where a sample lies: the bounds are halved again and again, as halves_of() does,
 /// down to single grid points, 64 times at most. Which half holds the point is one bit of its key
 /// each time. So the samples of a box that comes from halving the bounds are one run of the sorted
 /// ones; the samples of another box are in several runs.

@@ -64,7 +64,7 @@ struct PlainRead {
   std::uint32_t has_lattice, has_rows;
 };
 
-/// Reports how much of a portion is done, in its bytes.
+/// Tells how much of a portion is done, in its bytes.
 class PortionProgress {
  public:
   PortionProgress(const PointPortion& portion, const Task& task)

@@ -30,7 +30,7 @@ inline constexpr std::uint64_t kSpoolBlock = 4096;
 class SpoolWriter {
  public:
   /// A file of that name is replaced.  @throws Error io_error, resource_exhausted
-  /// @param number  Number of the spool: a block of another one is none of this.
+  /// @param number  Of the spool: a block of another one is none of this.
   SpoolWriter(FileLayer& files, const std::string& path, std::uint64_t number);
 
   /// @throws Error io_error, resource_exhausted

@@ -15,7 +15,7 @@ class TaskSchedule;
 
 /// What processes that do tasks must know of a build, beside its inputs and options.
 struct BuildNote {
-  nlohmann::json index;   ///< The source's index, as ReadSource takes it; null during reading.
+  nlohmann::json index;   ///< Of the source, as ReadSource takes it; null while it is being read.
   std::string folder;     ///< The build's, with the file of pages; "" where there is none yet.
   std::string temporary;  ///< The folder of its temporary files; likewise.
   nlohmann::json inputs;  ///< Names, sizes and times of the inputs, which must be the same for all.

@@ -239,8 +239,8 @@ class HighestSearch final : private BestStarVisitor {
   Detail detail_;
   LevelStars stars_;
   std::optional<GridRegion> region_;
-  std::optional<PolygonBorder> border_;  ///< The border, if the region is a polygon.
-  GridWindow window_{};                  ///< A window, or that of the terrain.
+  std::optional<PolygonBorder> border_;  ///< Of a polygon.
+  GridWindow window_{};                  ///< Of a window, or of the terrain.
   LivingFilter filter_;
   std::set<HighCandidate> best_;
   ClippedCorner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.

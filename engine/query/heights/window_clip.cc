@@ -23,7 +23,7 @@ Spot spot_of_clamped(double x, double y, const GridBox& b) {
 }
 
 /// Whether a triangle and a rectangle share a point.
-/// @param corners  Corners of the rectangle, counter-clockwise from the south-west.
+/// @param corners  Of the rectangle, counter-clockwise from the south-west.
 bool meets(const Tin& tin, const Triangle& t, const std::array<Spot, 4>& corners) {
   const Spot low = corners[0], high = corners[2];
   GridBox box = box_of(tin.position(t.v[0]));

@@ -43,8 +43,8 @@ void TileQueue::rethrow() const {
   }
 }
 
-/// The next tile, for which the worker then calls done() or fail(). None when all tiles are done,
-/// or after a failure.
+/// The next tile, of which the worker then tells done() or fail(). None when all tiles are done, or
+/// after a failure.
 std::optional<GridBox> TileQueue::take() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return failed_ || !waiting_.empty() || in_work_ == 0; });

@@ -21,7 +21,7 @@ class PolygonSides {
   /// polygons that share a side compute the same from it.
   struct Side {
     MapPoint low, high;
-    std::size_t first_bin = 0;  ///< First of those that it reaches.
+    std::size_t first_bin = 0;  ///< Of those that it reaches.
   };
   /// A closed box.
   struct Extent {
