@@ -271,8 +271,8 @@ double Viewer::longest_side(TriangleId t) const noexcept {
   return std::sqrt(square);
 }
 
-/// Looks at the triangles that hide one another in a ring, and at all behind them, by walks. There
-/// are some only where the mesh is far from Delaunay.
+/// Looks at the triangles that hide one another in a circle, and at all behind them, by walks.
+/// There are some only where the mesh is far from Delaunay.
 void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
   walked_.emplace(tin_, offsets_, eye_.spot);
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {

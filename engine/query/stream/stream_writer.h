@@ -75,7 +75,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// @throws Error invalid_argument, resource_exhausted (before anything is sent), corruption,
 /// io_error, cancelled; what `sink` throws
 /// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
-/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings tell
+/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings state
 /// their splits, from what the request says alone. With `most_splits`, and of servings that were cut, pages are read
 /// about as far down in errors as their splits are (first_records(), select/total_order.h).
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
