@@ -251,7 +251,7 @@ void Finder::find_regions() {
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     std::vector<VertexId>& l = leader[static_cast<std::size_t>(tin_.classes[t])];
     const Triangle& triangle = tin_.triangles[t];
-    // All three corners are joined, so that triangles that share one vertex are one region.
+    // All three corners are joined: triangles that share no more than a vertex are one region.
     const VertexId first = find(l, triangle.v[0]);
     l[find(l, triangle.v[1])] = first;
     l[find(l, triangle.v[2])] = first;

@@ -167,7 +167,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
     }
     read_shapes(run, left, shapes);
     left = find_living(run, left, shapes);
-    // Deaths were looked at first: other numbers are taken only where some triangle lives.
+    // Deaths were looked at first: other numbers are taken only for the stars that are left.
     for (const PageColumn c : kHead) {
       run.take_some(c, left);
     }

@@ -303,7 +303,7 @@ std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size
   return last_height_;
 }
 
-/// Length in bits of the range of the heights of w and the fan, which bounds about how far off a
+/// Length in bits of the range of the heights of w and the fan, which shows about how far off a
 /// prediction may be; 33 where none has a height.
 std::size_t SplitCode::roughness(const Tin& tin) const {
   std::int64_t low = INT64_MAX;

@@ -287,7 +287,7 @@ void LineWalk::begin_outside(const Place& place) {
   VertexId a = first;
   do {
     const VertexId b = tin_->triangles[t].v[previous_corner(edge_side)];
-    // A line over an edge that p lies beyond comes in. A vertex behind p leaves the others open.
+    // The line comes in over an edge that has p beyond it. A vertex behind p or q decides nothing.
     if (side(tin_->position(a), tin_->position(b), p_) < 0) {
       const Int128 turn_a = turn(a);
       const Int128 turn_b = turn(b);
