@@ -57,7 +57,7 @@ class StoreOutput final : public SegmentOutput {
   void resume(const nlohmann::json& position) override;
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
-  /// @param t0_deaths  For each of t0.triangles, as deaths_of().
+  /// @param t0_deaths  One for each of t0.triangles, as deaths_of().
   /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not
   /// depend on them.
   /// @param report   Counts for the metadata; receives records, t0_vertices, max_rank, file_bytes.

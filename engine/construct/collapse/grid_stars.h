@@ -39,7 +39,7 @@ class GridStars {
 
   const Tile& tile_;
   std::int32_t width_, height_;
-  std::vector<std::uint8_t> rising_;  ///< For each cell, by its south-western sample.
+  std::vector<std::uint8_t> rising_;  ///< One for each cell, by its south-western sample.
 };
 
 }  // namespace ptin

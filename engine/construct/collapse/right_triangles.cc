@@ -239,7 +239,7 @@ class Halving {
 
   const SampleGrid& grid_;
   std::span<const std::uint8_t> needed_;
-  std::vector<std::uint32_t> other_half_;  ///< For each cell: 1 + its half in triangles_; or 0.
+  std::vector<std::uint32_t> other_half_;  ///< 1 + each cell's half in triangles_; or 0.
   std::vector<RightTriangle> triangles_;
 };
 

@@ -103,7 +103,7 @@ class Simplifier {
   CollapseQueue queue_;
   StarSamples star_;
   std::vector<QueueState> state_;
-  std::vector<VertexId> target_;  ///< For a clean vertex: the chosen w.
+  std::vector<VertexId> target_;  ///< The chosen w of a clean vertex.
   std::uint64_t left_ = 0;        ///< Vertices that are neither locked nor gone.
   std::uint64_t alive_ = 0;       ///< Vertices that are not gone.
   std::uint64_t collapsed_ = 0;

@@ -24,8 +24,8 @@ class BucketCache {
 
   struct Bucket {
     std::vector<BucketPoint> points;
-    std::vector<std::uint8_t> is_in;  ///< For each of `points`: 1 when taken.
-    std::vector<GridBox> boxes;       ///< Around what is not taken of each kBlock points.
+    std::vector<std::uint8_t> is_in;  ///< 1 for each of `points` that is taken.
+    std::vector<GridBox> boxes;       ///< Boxes of what is not taken of each kBlock points.
     bool has_more = false;            ///< Some are taken that were not so from the beginning.
 
     /// True when all points are taken.

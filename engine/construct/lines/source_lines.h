@@ -19,8 +19,8 @@ namespace ptin {
 /// Lines one after the other, of one kind.
 struct LineSet {
   std::vector<SourcePoint> vertices;
-  std::vector<std::uint64_t> ends;  ///< For each line: one past the place of its last vertex.
-  /// For each of `vertices`: 0 where there is no ground below and z means nothing. Empty: all have
+  std::vector<std::uint64_t> ends;  ///< One past the place of each line's last vertex.
+  /// 0 for each of `vertices` that has no ground below, and whose z means nothing. Empty: all have
   /// ground.
   std::vector<std::uint8_t> has_ground;
 

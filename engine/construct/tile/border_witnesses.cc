@@ -71,7 +71,7 @@ class Finder {
   std::size_t n_;
   BorderWitnesses found_;
   std::vector<std::uint32_t> first_, around_;  ///< Triangles of each vertex.
-  std::vector<std::uint8_t> on_seam_;          ///< For each vertex: 1 if other leaves have it too.
+  std::vector<std::uint8_t> on_seam_;          ///< 1 for a vertex that other leaves have too.
 
   // The forest. A node is a witness that is not far, or is beside one that is not.
   struct Node {
@@ -112,7 +112,7 @@ class Finder {
   void grow_trees();
   void find_reaches();
 
-  std::vector<std::uint32_t> witness_;  ///< For each triangle, as Node::at; kNone in the margin.
+  std::vector<std::uint32_t> witness_;  ///< Each triangle's, as Node::at; kNone in the margin.
   std::vector<std::uint32_t> node_of_vertex_;
   std::unordered_map<TriangleId, std::uint32_t> node_of_triangle_;
   std::vector<Node> nodes_;

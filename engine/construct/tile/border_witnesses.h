@@ -62,7 +62,7 @@ struct BorderWitnesses {
     kBorder,   ///< Surface and void meet here.
     kUnknown,  ///< One class in the part, but not all of its triangles are in it.
   };
-  std::vector<Kind> kind;  ///< For each of tin.vertices, as the next two.
+  std::vector<Kind> kind;  ///< One for each of tin.vertices, as the next two.
   /// The nearest vertex of the border that is known, or one that is not much farther; itself for
   /// one on the border. kNoBorder where the part has none.
   std::vector<GridPoint> nearest;

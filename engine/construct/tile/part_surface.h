@@ -72,7 +72,7 @@ class PartSurface final : public FullSurface {
   std::vector<BorderSide> border_;       ///< By first corner.
   std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
   PackedBoxes boxes_;                    ///< Boxes of the sides, in that order.
-  std::vector<std::uint8_t> on_border_;  ///< For each vertex: 1 or 0.
+  std::vector<std::uint8_t> on_border_;  ///< 1 for a vertex of the border.
   FixedGaps fixed_;
 };
 

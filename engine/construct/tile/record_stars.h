@@ -18,8 +18,8 @@ namespace ptin {
 /// triangle names its successor, the record whose error will be its death.
 struct RecordStars {
   std::vector<RingCorner> corners;  ///< Ring after ring; all deaths are kLivesOn as yet.
-  /// For each of `corners`: the index of its triangle's successor in Tile::records; kNone for a
-  /// triangle of the full TIN, and where there is no triangle.
+  /// The successor of each corner's triangle, as an index of Tile::records; kNone for a triangle of
+  /// the full TIN, and where there is no triangle.
   std::vector<std::uint32_t> successors;
   std::vector<std::uint32_t> ring_end;  ///< Ends of stars, in `corners`.
 
@@ -28,7 +28,7 @@ struct RecordStars {
 };
 
 /// Gives triangles their deaths.
-/// @param successors  For each of `corners`.
+/// @param successors  One for each of `corners`.
 /// @param error_of    Called with the index of a successor; gives its final error. Cost: linear.
 template <class ErrorOf>
 void set_deaths(std::span<RingCorner> corners, std::span<const std::uint32_t> successors,

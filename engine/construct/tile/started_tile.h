@@ -21,7 +21,7 @@ namespace ptin {
 struct SurroundingSamples {
   GridBox box;
   std::vector<HeightBits> heights;
-  std::vector<std::uint8_t> valid;  ///< For each of `heights`; 0 for a sample without a height.
+  std::vector<std::uint8_t> valid;  ///< 1 for each of `heights`, 0 for a sample without one.
 };
 
 /// A leaf with the full TIN of its window, and the full surface under it.

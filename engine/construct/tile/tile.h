@@ -66,8 +66,8 @@ struct MeasureUnits {
 /// records that it names, and all samples or carried ones (construct/hierarchy/tile_push.h).
 struct Tile {
   Tin tin;
-  std::vector<CarriedState> carried;      ///< For each of tin.triangles.
-  std::vector<VertexState> vertex_state;  ///< For each of tin.vertices.
+  std::vector<CarriedState> carried;      ///< One for each of tin.triangles.
+  std::vector<VertexState> vertex_state;  ///< One for each of tin.vertices.
   SampleLists samples;
   /// First the records that the tile begins with: foreign ones, which its children pushed up, or
   /// those of a first pass (construct/collapse/first_pass.h), which no file keeps. Then its own, in
@@ -87,8 +87,8 @@ struct Tile {
 /// @param witnesses  By vertices. Null: no border is in reach, and all reaches are +infinity.
 void start_tile(Tile& tile, const BorderWitnesses* witnesses);
 
-/// For each of tin.triangles the error at which it dies, that of its successor; kLivesOn for a
-/// triangle of the full TIN. REQUIRES: the errors of the records are final. Cost: linear.
+/// The error at which each of tin.triangles dies, that of its successor; kLivesOn for a triangle of
+/// the full TIN. REQUIRES: the errors of the records are final. Cost: linear.
 [[nodiscard]] std::vector<float> deaths_of(const Tile& tile);
 
 }  // namespace ptin

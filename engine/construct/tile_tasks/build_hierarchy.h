@@ -36,7 +36,7 @@ struct HierarchyOptions {
 
 struct BuiltHierarchy {
   Tin t0;                          ///< The coarsest TIN, every vertex and triangle alive.
-  std::vector<float> t0_deaths;    ///< For each of t0.triangles, as deaths_of().
+  std::vector<float> t0_deaths;    ///< One for each of t0.triangles, as deaths_of().
   std::uint64_t lone_samples = 0;  ///< In all leaves; see StartedTile.
   std::uint64_t most_bytes = 0;    ///< The most that was admitted at once, by estimate.
 };
