@@ -32,7 +32,7 @@ struct LineFileCrs {
 /// Takes a line. @param has_heights  False: the z of its vertices means nothing.
 using TakeLine = std::function<void(const std::vector<SourcePoint>& line, bool has_heights)>;
 
-/// True where the name is that of LandXML: .xml or .landxml, in any case.
+/// True where the name tells LandXML: .xml or .landxml, in any case.
 [[nodiscard]] bool is_land_xml(const std::string& path);
 
 /// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A ring ends

@@ -45,7 +45,7 @@ class TileTree {
   /// about as many samples; leaf_number() says which piece of the curve a leaf is.
   /// @param points  Their number.
   /// @param side    A leaf holds at most side * side points.
-  /// @param hull    Hull of all points: edges on it are no seams.
+  /// @param hull    Of all points: edges on it are no seams.
   [[nodiscard]] static TileTree over_points(std::uint64_t points, std::int64_t side,
                                             std::shared_ptr<const ConvexHull> hull);
   /// The hull of points; null over a raster.
