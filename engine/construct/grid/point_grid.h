@@ -200,7 +200,7 @@ class PointGridScan {
   int plan_decimals_ = 0, height_decimals_ = 0;
   PointExtent extent_;
   DecimalRange line_x_, line_y_, line_z_;
-  int most_line_decimals_ = 0;  ///< Decimals of plan coordinates.
+  int most_line_decimals_ = 0;  ///< So many decimals of a line's x and y count.
 };
 
 /// Why a point is not to be built from: its height is `options.nodata`, or it lies outside of
