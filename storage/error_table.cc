@@ -10,7 +10,7 @@ namespace ptin {
 namespace {
 
 constexpr std::uint32_t kBinStep =
-    1U << 20;  // a float has 23 mantissa bits; the upper three tell the bin
+    1U << 20;  // a float has 23 mantissa bits; the upper three give the bin
 
 }  // namespace
 

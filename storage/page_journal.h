@@ -22,7 +22,7 @@ struct PublishMark {
   std::uint64_t pages = 0;
   std::uint64_t moved_bytes = 0;  ///< From the start of the file ...
   std::uint64_t moved_to = 0;     ///< ... to this offset.
-  std::uint64_t checksum = 0;     ///< Of the fields above.
+  std::uint64_t checksum = 0;     ///< Checksum of the fields above.
 };
 
 /// An append-only file of descriptors. Memory: at most 4096 descriptors.

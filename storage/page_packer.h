@@ -58,7 +58,7 @@ class PagePacker {
     Numbers least, most;
     ShortRange error, deviation;
     bool has_void = false, has_no_height = false;
-    std::size_t own_bits = 0;  ///< Of all corners: offsets, heights and deaths.
+    std::size_t own_bits = 0;  ///< Bits of all corners: offsets, heights and deaths.
     std::size_t corners = 0;
   };
 

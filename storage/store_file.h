@@ -54,7 +54,7 @@ class StoreFile {
   /// checksums of header, tables, metadata and T0. Index nodes and record pages are verified when
   /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
   /// whatever the number of records.
-  /// @param announcer  Is told what is read next; null: the kernel is. The store shares it.
+  /// @param announcer  Hears what is read next; null: the kernel does. The store shares it.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
   ///               is no regular file, a stream, or begins like no store at all
   static std::shared_ptr<const StoreFile> open(const std::string& path,

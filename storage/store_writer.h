@@ -26,8 +26,8 @@ struct DirectoryOptions {
   /// So that the directory stays below 48 KiB, and with all else that comes at the opening of a file
   /// that lies elsewhere below 64 KiB.
   std::uint32_t most_cells = 4900;
-  /// The nodes take at most one byte for so many of the pages. Where they would take more there are
-  /// fewer cells, and at last none: the stars of most pages reach far.
+  /// Budget: one byte of nodes for so many bytes of pages. Above it there are fewer cells; if even
+  /// one does not fit, since the stars of most pages reach far, there is no directory.
   std::uint64_t page_bytes_of_byte = 200;
 };
 

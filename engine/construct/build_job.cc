@@ -85,7 +85,8 @@ Error with_advice(const Error& error, const std::string& folder, const char* adv
           error.context()};
 }
 
-/// The error, told with the work that is kept. This stays of use where a sorted source is damaged.
+/// The error, with the work that is kept added to its text. This stays of use where a sorted source
+/// is damaged.
 Error error_with_work(Workspace& workspace, const Job& job, const Error& error) {
   if (!is_lost_sorted_source(error, workspace.temporary_folder())) {
     const bool is_over = job.inputs_changed || (error.code() == ErrorCode::corruption &&
@@ -269,7 +270,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   } catch (...) {
     const Error e = error_in_flight();
     if (e.code() == ErrorCode::resource_exhausted && is_published(job, workspace)) {
-      report_published(job);  // only telling of it failed
+      report_published(job);  // only reporting it failed
       remove_done(workspace, job);
       return;
     }
@@ -341,7 +342,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
                     workspace.folder());
   if (!job.begin(index, &workspace)) {
     job.goes_on_elsewhere = true;
-    // Hours of work will be in the folder, of which its manifest does not tell: no error may remove it.
+    // Hours of work will be in the folder, of which its manifest does not know: no error may remove
+    // it.
     workspace.append({{{"elsewhere", true}}});
     return;
   }

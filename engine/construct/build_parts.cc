@@ -41,7 +41,7 @@ FileLayer& files_of(const BuildResources& resources) {
 int parts_of(PartsPhase phase, int parts) { return phase == PartsPhase::kJoin ? 1 : parts; }
 
 // -------------------------------------------------------------------------------------------------
-// What jobs tell: their results, in a file that appears when all of them are there.
+// What jobs report: their results, in a file that appears when all of them are there.
 
 std::string told_in(const std::string& folder, PartsPhase phase, int part) {
   return folder + "/part-" + name_of(phase) + "-" + std::to_string(part);
@@ -91,8 +91,8 @@ void forget_told(FileLayer& files, const std::string& folder, PartsPhase phase, 
   files.unlink(told_in(folder, phase, part));  // gone already where another job met the same
 }
 
-/// Takes up what a job told. False when it told nothing.
-/// @throws Error corruption  what it told is damaged: it is forgotten
+/// Takes up what a job reported. False when it reported nothing.
+/// @throws Error corruption  its report is damaged: it is forgotten
 bool take_told(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
                TaskResults& results) {
   std::ifstream file(told_in(folder, phase, part), std::ios::binary);
@@ -121,7 +121,7 @@ constexpr std::chrono::milliseconds kPatienceForJobs{2000};
 void require_told(FileLayer& files, const std::string& folder, PartsPhase phase, int parts,
                   std::chrono::milliseconds patience, TaskResults& results) {
   for (int part = 0; part < parts_of(phase, parts); ++part) {
-    // That a job was not done is likelier than that what it told shows late.
+    // That a job was not done is likelier than that its report shows late.
     await_file(told_in(folder, phase, part), std::min(patience, kPatienceForJobs), {});
     if (!take_told(files, folder, phase, part, results)) {
       throw Error(ErrorCode::invalid_argument,
@@ -205,7 +205,7 @@ class NoteTaker final : public TaskDriver {
   std::string note_;
 };
 
-/// Goes on from what the jobs told.
+/// Goes on from what the jobs reported.
 class Publisher final : public TaskDriver {
  public:
   Publisher(int parts, const BuildResources& resources)

@@ -24,7 +24,7 @@ struct CrsFacts {
       false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.
   /// The name of the vertical part; "ellipsoidal height" of a third axis. Empty when it is unknown.
   std::string vertical_name;
-  std::string vertical_code;  ///< Of the vertical part, or of a CRS of three axes as a whole.
+  std::string vertical_code;  ///< Code of the vertical part, or of a whole CRS of three axes.
   bool geographic = false;
   /// The authority's order of axes begins with the one to the north, as that of EPSG:4326. Positions
   /// in files and answers have x, to the east, first all the same.
@@ -36,7 +36,7 @@ struct CrsFacts {
   GroundFacts ground{.metres_per_height = 0.0};
 
   /// The short form for the headers of files: the code where there is one, else the WKT. That of a
-  /// CRS of three axes tells of its heights, too.
+  /// CRS of three axes says of its heights, too.
   [[nodiscard]] std::string horizontal_text() const { return code.empty() ? wkt : code; }
   /// The text of a vertical CRS; empty where there is none apart from horizontal_text().
   [[nodiscard]] std::string vertical_text() const {

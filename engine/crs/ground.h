@@ -14,7 +14,7 @@
 
 namespace ptin {
 
-/// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing tells
+/// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing states
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 

@@ -24,7 +24,7 @@
 // A request holds a DetailRequest (which TIN: the full one, one within an error, or the most
 // important vertices; select/detail.h) and QueryLimits (memory and stop token;
 // select/query_limits.h). Two requests differ. A StreamRequest names what is wanted by a predicate.
-// A MovingWindow gets its predicate and its stop token with each move. Every result tells what it
+// A MovingWindow gets its predicate and its stop token with each move. Every result states what it
 // is certified for and what it cost.
 //
 // This header declares requests and results alone. Who asks a question includes its header too, and
@@ -92,8 +92,8 @@ enum class AnswerBy : std::uint8_t {
 ///
 /// Errors that every question may throw; the header of a question names further ones:
 ///   invalid_argument    a request that means nothing
-///   resource_exhausted  the answer needs more memory than the limit; what the index tells of is
-///                       told before pages are read, what results take while they grow
+///   resource_exhausted  the answer needs more memory than the limit; what the index shows is
+///                       refused before pages are read, what results take while they grow
 ///   corruption          a page of the file is damaged, or the file changed since it was opened
 ///   io_error            the file cannot be read
 ///   cancelled           a stop was requested

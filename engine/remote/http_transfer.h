@@ -19,7 +19,7 @@
 
 namespace ptin {
 
-/// By what an object is told from the one that takes its place.
+/// What sets an object apart from the one that takes its place.
 struct ObjectIdentity {
   std::uint64_t bytes = 0;
   std::string etag, modified;  ///< As the server says them; empty: it does not.

@@ -43,7 +43,7 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] bool is_at_hand(const ByteRange& range) const noexcept override;
   void settle(IoCounters& counters) const noexcept override;
   /// Forgets what this thread announced and did not read. The server is not asked: each of its answers
-  /// tells whether the object is another one, and once one of them has, this does.
+  /// shows whether the object is another one, and once one of them has, this does.
   void check_unchanged() const override;
 
   /// Keeps blocks in the folder of the options from now on, and looks for them there.
@@ -63,7 +63,7 @@ class RangedFile final : public ReadableFile {
   struct Costs {
     std::uint64_t rounds = 0, requests = 0, bytes = 0;
   };
-  /// Of one thread, which is one question.
+  /// The counters of one thread, which is one question.
   struct Asker {
     std::vector<ByteRange> announced;  ///< In the order of reading.
     Costs costs;

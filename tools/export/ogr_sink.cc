@@ -91,7 +91,7 @@ class OgrSink final : public TinSink {
     feature_.reset();
     CPLErrorReset();
     const bool was_disk_full = is_disk_full(pending_.path());
-    GDALClose(dataset_.release());  // Has no result; GDAL's last error tells.
+    GDALClose(dataset_.release());  // Has no result; GDAL's last error says.
     if (CPLGetLastErrorType() >= CE_Failure || !is_complete())
       throw gdal_failure("cannot finish the output", pending_.path(), was_disk_full);
     pending_.publish();
@@ -131,7 +131,7 @@ class OgrSink final : public TinSink {
     }
   }
   /// Looks whether all features were written. A database (GeoPackage) says itself what it could not
-  /// write. Of a plain file GDAL does not notice every short write, so its features are read back
+  /// write. GDAL does not notice every short write to a plain file, so its features are read back
   /// and counted.
   [[nodiscard]] bool is_complete() const {
     if (has_transactions_) return true;

@@ -15,7 +15,7 @@
 
 namespace ptin::tools {
 
-/// What a pixel tells of the surface at its centre.
+/// What a pixel says of the surface at its centre.
 enum class PixelValue {
   kHeight,
   kSlope,     ///< 0 to 90 degrees, or percent.

@@ -16,7 +16,7 @@ namespace ptin::tools {
 /// Refuses a region that shares no point with the box of the terrain's samples: no answer could
 /// hold anything of the terrain. A region within the box but outside of the terrain's hull passes.
 /// @param option  Gave the region; named in the error.
-/// @throws Error invalid_argument  tells the terrain's bounds, and whether the region would meet
+/// @throws Error invalid_argument  states the terrain's bounds, and whether the region would meet
 ///                                 them if x and y changed places; as GridRegion
 /// Cost: linear in the region's corners.
 void check_on_terrain(const Region& region, const StoreFacts& facts, const std::string& option);

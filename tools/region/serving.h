@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What a stream is asked for: as text that a receiver hands back, as a predicate, and as what the
-// stream tells of itself.
+// stream says of itself.
 #pragma once
 
 #include <cstdint>

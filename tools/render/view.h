@@ -7,7 +7,7 @@
 
 namespace ptin::tools {
 
-/// Of a side of a picture: Cairo has no larger ones.
+/// Most pixels of a picture's side: Cairo has no larger ones.
 constexpr int kMostPixels = 32767;
 
 /// Pixel (0, 0) is the upper left one; its centre is at (0.5, 0.5).

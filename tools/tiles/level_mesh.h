@@ -88,7 +88,7 @@ class LevelMesh {
   double short_square_;  ///< Edges of this length squared bend too little to be looked at.
   double normal_scale_;
   std::vector<LevelPoint> points_;
-  std::vector<Place> places_;  ///< Beside `points_`.
+  std::vector<Place> places_;  ///< One for each of `points_`.
   std::vector<Corners> triangles_;
   std::map<std::pair<double, double>, Id> middles_;
 };

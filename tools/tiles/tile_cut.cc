@@ -66,8 +66,8 @@ std::int64_t TileCut::twice_area() const noexcept {
 
 void TileCut::cut_at(const Border& border) {
   rest_.clear();
-  // Of two points along a border the one edge is crossed once, not there and back: its triangle is
-  // beside the tile, and is one of those around the cut point.
+  // Two points along a border have one edge, which is crossed once, not there and back: its
+  // triangle is beside the tile, and is one of those around the cut point.
   const std::size_t edges = polygon_.size() == 2 ? 1 : polygon_.size();
   clip_convex(
       polygon_.size(),

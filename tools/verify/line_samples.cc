@@ -24,7 +24,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Of a vertex of a boundary without heights: any other height is lower, and stands.
+/// Height of a vertex of a boundary without heights: any other is lower, and stands.
 constexpr double kNoHeight = std::numeric_limits<double>::infinity();
 
 /// A height as the file stores it.
@@ -39,7 +39,7 @@ double stored(double height, const HeightEncoding& heights) {
   return heights.height_of_code(std::nearbyint((height - heights.offset) / heights.step));
 }
 
-/// Refuses files other than those that the store was built with, as far as their number tells.
+/// Refuses files other than those that the store was built with, as far as their number shows.
 void check_files(const LineInputs& inputs, const nlohmann::json& options) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);

@@ -65,7 +65,7 @@ class SortedSamples {
   struct Together {
     NumberedRecord first{};
     double lowest = 0.0, highest = 0.0;
-    double sum = 0.0;  ///< Of code_of().
+    double sum = 0.0;  ///< Sum of code_of().
     std::uint64_t count = 0;
   };
 
@@ -96,7 +96,7 @@ class SortedSamples {
   ExternalMemory memory_;
   PointMerge rule_;
   std::unique_ptr<Sorter> sorter_;
-  std::uint64_t size_ = 0;  ///< Of sorted records.
+  std::uint64_t size_ = 0;  ///< Number of sorted records.
   /// All sorted records, or those that are not in the file yet.
   std::vector<Record> records_;
   std::unique_ptr<ScratchFile> file_;  ///< All records, when memory is too small.

@@ -89,7 +89,7 @@ class Verifier {
   double slack_ = 0.0;
   bool is_grid_ = false;  ///< The source is a raster.
   AgainstReport report_;
-  std::optional<BorderLines> border_;  ///< Of the source, in and around the window at hand.
+  std::optional<BorderLines> border_;  ///< The source's border, in and around the window at hand.
   std::mt19937_64 random_{20260101};
 };
 
@@ -370,7 +370,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
 }
 
 /// A file that left detail out does not have its lone points any more, so drop_lone_points() does not
-/// see them. The points around tell: all within four times the longest edge.
+/// see them. The points around decide: all within four times the longest edge.
 bool Verifier::may_be_left_out_as_lone(const SourceSample& sample) {
   if (!choices_.max_edge || facts_.base_error == 0 || source_.lines() != nullptr) return false;
   const GroundSteps steps = ground_steps(facts_.map, ground_, static_cast<double>(sample.y));

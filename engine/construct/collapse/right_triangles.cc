@@ -58,7 +58,7 @@ struct Shape {
   GridPoint apex;
   std::int32_t rows, up;
   std::int32_t left, right, left_step, right_step;
-  double slope_x, slope_y;  ///< Of the plane, codes a cell.
+  double slope_x, slope_y;  ///< Slopes of the plane, codes a cell.
 };
 
 /// True when all samples of the triangle have a height and residuals within the tolerance, or none
@@ -237,7 +237,7 @@ class Halving {
 
   const SampleGrid& grid_;
   std::span<const std::uint8_t> needed_;
-  std::vector<std::uint32_t> other_half_;  ///< Of each cell: 1 + its half in triangles_; or 0.
+  std::vector<std::uint32_t> other_half_;  ///< 1 + each cell's half in triangles_; or 0.
   std::vector<RightTriangle> triangles_;
 };
 

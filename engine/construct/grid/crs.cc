@@ -116,7 +116,7 @@ void require_upwards(const OGRSpatialReference& srs) {
 Crs describe(OGRSpatialReference srs) {
   Crs crs;
   if (srs.IsCompound() && is_vertical_unnamed(srs)) {
-    // The vertical part tells a unit alone. A name that tells the unit's length is enough.
+    // The vertical part states a unit alone. A name that gives the unit's length is enough.
     const LengthUnit unit = vertical_unit_of(srs);
     if (metres_in(unit.name)) {
       crs.vertical_unit = unit.name;
@@ -168,7 +168,7 @@ class OwnCrs {
       warn_of_unit(crs);
       return with_unit(std::move(crs));
     }
-    // A compound CRS tells what a vertical one is: any other part in plan does.
+    // A compound CRS shows what a vertical one is: any other part in plan does.
     const Crs with_any_plane = resolve_crs("EPSG:32631", "", declared_.vertical_crs);
     warn("crs_vertical_alone",
          "it names the vertical CRS " + quoted(declared_.vertical_crs) +
@@ -234,7 +234,7 @@ class OwnCrs {
   }
 
   DeclaredTexts declared_;
-  std::string plane_unit_ = "unknown";  ///< Of a CRS that was dropped.
+  std::string plane_unit_ = "unknown";  ///< The unit of a CRS that was dropped.
   const std::string& file_;
   SourceWarnings& warnings_;
 };

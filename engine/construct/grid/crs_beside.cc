@@ -90,15 +90,15 @@ void take_crs_beside(const std::string& path, std::string& crs, SourceWarnings& 
   if (beside.text.empty()) {
     return;
   }
-  const std::string told = crs_of_prj(beside.text);
+  const std::string stated = crs_of_prj(beside.text);
   if (crs.empty()) {
-    crs = told;
+    crs = stated;
     return;
   }
-  if (is_crs(crs) && is_crs(told) && !is_same_place(crs, told)) {
+  if (is_crs(crs) && is_crs(stated) && !is_same_place(crs, stated)) {
     warnings.add({.kind = "crs_beside_differs",
                   .message = "the file says that its CRS is '" + name_of_crs(crs) + "', and " +
-                             beside.path + " beside it '" + name_of_crs(told) +
+                             beside.path + " beside it '" + name_of_crs(stated) +
                              "'; the file is believed; where it is wrong, name the CRS by --a-srs",
                   .file = path});
   }

@@ -83,7 +83,7 @@ std::uint16_t code_of(const std::vector<Entry>& entries, Key key) {
   return found == entries.end() ? kUndefined : (*found)[3];
 }
 
-/// A TIFF of one pixel that holds keys: GDAL opens it, and so tells what they mean.
+/// A TIFF of one pixel that holds keys: GDAL opens it, and so says what they mean.
 class KeyTiff {
  public:
   KeyTiff(const Bytes& directory, const GeoTiffKeys& keys) {
@@ -302,7 +302,7 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
     }
     declared.units.heights = unit ? unit->name : "";
     if (unit && !metres_in(unit->name)) {
-      declared.vertical_crs = vertical_text(both, *unit);  // which alone tells how long it is
+      declared.vertical_crs = vertical_text(both, *unit);  // which alone states its length
     }
     return;
   }

@@ -48,7 +48,7 @@ class HeightScan {
   [[nodiscard]] HeightFit fit() const;
 
  private:
-  static constexpr int kMaxDecimals = 4;  ///< Of the finest decimal step that is tested.
+  static constexpr int kMaxDecimals = 4;  ///< Decimals of the finest step that is tested.
   void test_decimals(double height);
   void choose_rounded(HeightFit& fit) const;
   [[nodiscard]] double float_quantum() const;

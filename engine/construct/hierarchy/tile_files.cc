@@ -9,7 +9,7 @@ namespace ptin {
 
 namespace {
 
-/// CarriedState without what the record tells (box and chain) and what the reader makes (the slot).
+/// CarriedState without what the record has (box and chain) and what the reader makes (the slot).
 struct StoredCarried {
   std::uint32_t record;
   std::uint32_t samples;

@@ -6,11 +6,11 @@
 // push_up() cuts a tile down to what its parent needs:
 // 1. Alive vertices and triangles get new numbers in their old order, so that nothing that is
 //    decided by order changes.
-// 2. Of the records only those stay that a triangle carries: the parent's records will depend on no
-//    other. `exported` remembers which they are, for tightening. All of them, and the stars, are
+// 2. Only records stay that a triangle carries: the parent's records will depend on no others.
+//    `exported` remembers which they are, for tightening. All of them, and the stars, are
 //    handed back beside the pushed tile.
 // 3. Triangles are copied by these numbers, with all their samples (from a leaf) or with a few
-//    witnesses (from any other tile). The old tile is freed.
+//    carried samples (from any other tile). The old tile is freed.
 // Between the steps the pushed tile lies in memory (leaves) or in a file
 // (construct/hierarchy/tile_files.h).
 //

@@ -23,7 +23,8 @@ struct LineEdge {
   std::array<bool, 2> unused{};  ///< In the place of padding: edges are written as they are.
 };
 
-/// A side of the boundary, or a part of one, where there is no ground. It tells inside from outside.
+/// A side of the boundary, or a part of one, where there is no ground. It only divides inside from
+/// outside.
 struct SideWithoutGround {
   GridPoint a, b;
 };
@@ -37,7 +38,7 @@ struct LineGraph {
   double largest_bend = 0.0;
 };
 
-/// How heights are compared where lines meet, and how a place is told.
+/// How heights are compared where lines meet, and how a place is named.
 struct NodingRules {
   double height_step = 0.0;  ///< Heights that differ by no more are equal.
   /// False: heights of lines that meet are not compared, since they are those of one surface but for

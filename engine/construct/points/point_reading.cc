@@ -57,7 +57,8 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.source = stream->facts();
   SourceWarnings of_crs;
   const bool is_layer = point_format_of(path, options_.points) == PointFormat::kLayer;
-  // OGR looks at a .prj where one belongs to a layer; that it is another CRS is told once a file.
+  // OGR looks at a .prj where one belongs to a layer; that it is another CRS is reported once a
+  // file.
   if (result.source.crs.empty() || (!is_layer && portion.part.begin == 0)) {
     take_crs_beside(path, result.source.crs, of_crs);
   }

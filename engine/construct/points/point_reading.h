@@ -49,7 +49,7 @@ class EvenSample {
 /// What one portion is, when it has been read.
 struct PortionRead {
   PointStreamFacts source;
-  PointExtent extent;        ///< Of the wanted points.
+  PointExtent extent;        ///< Extent of the wanted points.
   LeftOutPoints left_out{};  ///< By the stream, or since they are not wanted.
   std::optional<RowsOfPart> rows;
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
@@ -66,7 +66,7 @@ void serialize(File& file, Read& r) {
 
 /// The portions of one stage of reading.
 struct ReadingPlan {
-  std::uint64_t first_number = 0;  ///< Of the files that the first of them is written to.
+  std::uint64_t first_number = 0;  ///< Number of the file that the first of them is written to.
   std::vector<PointPortion> portions;
 };
 template <class File, MaybeConst<ReadingPlan> Plan>
@@ -112,7 +112,7 @@ struct PointReading {
   std::string vertical_crs{};  ///< Likewise.
   DeclaredUnits units{};       ///< Those of all files.
   std::string crs_path{};      ///< The file that declared these first.
-  PointGridScan scan;          ///< Of all points and files.
+  PointGridScan scan;          ///< What all points and files say.
   LeftOutPoints left_out{};
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
   SourceWarnings warnings{};                  ///< Warnings of all portions.

@@ -24,9 +24,9 @@ struct RangeIndex {
   double largest_shift_height = 0.0;  ///< As GridVertex has heights.
   HeightFinder heights;
   std::vector<GridPoint> hull;           ///< Its corners.
-  std::vector<GridBox> boxes;            ///< Of the buckets.
+  std::vector<GridBox> boxes;            ///< Boxes of the buckets.
   std::vector<std::uint64_t> ends;       ///< Where each bucket ends in the file of the range.
-  std::vector<std::uint64_t> checksums;  ///< Of the buckets.
+  std::vector<std::uint64_t> checksums;  ///< Checksums of the buckets.
 };
 
 template <class File, MaybeConst<RangeIndex> Index>

@@ -55,7 +55,7 @@ void RasterSource::take_unit(const std::string& declared, const std::string& pat
   }
 }
 
-/// Takes the unit of x and y that the first file tells beside a CRS. Degrees without a CRS have no
+/// Takes the unit of x and y that the first file states beside a CRS. Degrees without a CRS have no
 /// length over ground, so there is a warning.
 void RasterSource::take_plane_unit(const std::string& path) {
   const std::string& unit = mosaic_.first().plane_unit;

@@ -61,8 +61,8 @@ struct RasterSurface::Line {
   double rise;
   double enter = 0.0, leave = 1.0;
 
-  /// Of the crossings 1 .. n - 1 with a family of lines, which divide the edge into n equal parts,
-  /// first(n) .. end(n) - 1 hold all that may lie in the window, and a few more.
+  /// Crossings 1 .. n - 1 with a family of lines divide the edge into n equal parts; first(n) ..
+  /// end(n) - 1 hold all that may lie in the window, and a few more.
   [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
     return enter <= 0.0 ? 1
                         : std::max<std::int64_t>(

@@ -20,7 +20,7 @@ namespace {
 
 /// How far around a window the border between surface and void is looked for, so that what lies
 /// close to the window's seams knows of a border beyond. Whether the last of these samples are lone,
-/// the cells around them tell: hence one more.
+/// the cells around them decide: hence one more.
 constexpr std::int64_t kMargin = 32 + 1;
 /// Depths beyond so many samples count as infinite.
 constexpr double kFarthest = 64.0;
@@ -71,7 +71,7 @@ GridBox box_of_window(const SampleRange& window) {
           static_cast<std::int32_t>(window.y0 + window.height - 1)};
 }
 
-/// Tells of an edge on the side of a window whether the raster goes on beyond it.
+/// Whether the raster goes on beyond an edge on the side of a window.
 std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const SampleRange& raster,
                                                          const SampleRange& window) {
   const GridBox all = box_of_window(raster), part = box_of_window(window);

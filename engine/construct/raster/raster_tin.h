@@ -35,7 +35,7 @@ struct RasterCell {
 /// The full TIN of a window. A triangle is void when one of its corners has no height.
 /// @param heights   Row-major, row 0 in the south. Where `valid` is 0 the height is not looked at,
 ///                  and the vertex gets height 0.
-/// @param valid     Beside `heights`; 0 for a sample without a height.
+/// @param valid     1 for each of `heights`, 0 for a sample without one.
 /// @return  Vertices are numbered row by row from the south, so that their ids are in the order of
 ///          their keys. Cell (i, j) has the triangles 2 * c and 2 * c + 1 with
 ///          c = j * (window.width - 1) + i, the triangle at its lower edge first.

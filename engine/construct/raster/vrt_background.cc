@@ -103,7 +103,7 @@ bool has_sources(const CPLXMLNode* band) {
   return EQUAL(CPLGetXMLValue(band, "subClass", "VRTSourcedRasterBand"), "VRTSourcedRasterBand");
 }
 
-/// Adds an alpha band to a VRT that warps. False where it tells otherwise what it covers.
+/// Adds an alpha band to a VRT that warps. False where it states otherwise what it covers.
 bool add_alpha(CPLXMLNode* root) {
   CPLXMLNode* const options = CPLGetXMLNode(root, "GDALWarpOptions");
   if (options == nullptr || CPLGetXMLNode(options, "DstAlphaBand") != nullptr) {

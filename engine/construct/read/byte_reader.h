@@ -41,7 +41,7 @@ class ByteReader {
   static constexpr std::size_t kLongest = std::size_t{64} << 10;
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Of the whole file.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Bytes of the whole file.
   /// Bytes handed out so far.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
   /// "path:line" of the last line handed out, for errors.

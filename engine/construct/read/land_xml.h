@@ -19,13 +19,13 @@ namespace ptin {
 
 /// A surface that a caller names, among those of a file: by its name, or by its place in the file as
 /// "#2", since several may have one name.
-/// @param number  Of the surface, from 1.
+/// @param number  Number of the surface, from 1.
 [[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
                                     std::uint64_t number);
 
-/// Reads LandXML as a stream, in any encoding that it names, and tells a derived class of its elements. A document type declaration
-/// is refused, and with it every entity that a file could define. Errors are kept and thrown outside
-/// of expat, which is C.
+/// Reads LandXML as a stream, in any encoding that it names, and hands its elements to a derived
+/// class. A document type declaration is refused, and with it every entity that a file could
+/// define. Errors are kept and thrown outside of expat, which is C.
 class LandXmlElements {
  public:
   LandXmlElements(const LandXmlElements&) = delete;

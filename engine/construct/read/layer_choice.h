@@ -23,7 +23,7 @@ struct LayerWish {
 
 /// The layer of this name. Without a name, the only one that fits: whose type may hold such
 /// features, and which has any, if several may hold them.
-/// @param path  Of the file, for errors.
+/// @param path  Path of the file, for errors.
 /// @throws Error  invalid_argument  there is no layer, or none of this name; its type does not fit;
 ///                                  none fits, or several do
 /// Cost: reads the first feature of each layer where several fit.

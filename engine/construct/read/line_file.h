@@ -27,8 +27,8 @@ using TakeLine = std::function<void(const std::vector<SourcePoint>& line, bool h
 
 /// Hands every line, or of LayerKind::kAreas every ring of every polygon, to `take`, in the order of the file. A ring ends
 /// with the vertex that it begins with. Features without a geometry are passed over, and so are hidden
-/// ones (read/hidden_features.h). Of LandXML these are the Breaklines and the Boundaries of a surface's
-/// SourceData, with northing before easting; of other files what OGR reads.
+/// ones (read/hidden_features.h). From LandXML come the Breaklines and the Boundaries of a
+/// surface's SourceData, with northing before easting; from other files what OGR reads.
 /// @throws Error  not_found, io_error, cancelled
 ///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
 ///                                  no line (no polygon), has curves, or

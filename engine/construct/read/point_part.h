@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Parts of a file of points that are read by themselves, and what each of them tells of the whole.
+// Parts of a file of points that are read by themselves, and what each of them says of the whole.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct RowNumbering {
   void join(const RowNumbering& next) noexcept;
 };
 
-/// What a part of a text tells of its rows, which only all parts together show.
+/// What a part of a text says of its rows, which only all parts together show.
 struct RowsOfPart {
   RowNumbering numbering;
   std::uint64_t lines = 0;     ///< All that begin in the part.

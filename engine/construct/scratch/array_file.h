@@ -22,7 +22,7 @@ namespace ptin {
 /// What a manifest knows of a finished file.
 struct ArrayFileFacts {
   std::uint64_t bytes = 0;
-  std::uint64_t checksum = 0;  ///< Of the headers, which hold the checksums of the arrays.
+  std::uint64_t checksum = 0;  ///< Checksum of the headers, which hold those of the arrays.
   friend bool operator==(const ArrayFileFacts&, const ArrayFileFacts&) = default;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a process that directs a build and those that do its tasks tell each other: lines of JSON.
+// What a process that directs a build and those that do its tasks send each other: lines of JSON.
 #pragma once
 
 #include <string>
@@ -30,13 +30,13 @@ struct BuildNote {
 [[nodiscard]] std::string message_of(const Task& task);
 /// @throws nlohmann::json::exception  the message is none of message_of()
 [[nodiscard]] Task task_in_message(const std::string& message);
-/// Does a task, and tells what came of it: its result, the input that was damaged, or the error that
-/// it met.
+/// Does a task, and returns what came of it: its result, the input that was damaged, or the error
+/// that it met.
 [[nodiscard]] std::string answer_to(const Task& task, TaskWorker& worker);
 /// The answer of a process that could not begin, or to which something else happened.
 [[nodiscard]] std::string answer_of(const Error& error);
 /// Hands an answer to the schedule.
-/// @throws Error  the error that the answer tells; as TaskSchedule::done() and failed()
+/// @throws Error  the error that the answer holds; as TaskSchedule::done() and failed()
 void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule);
 
 }  // namespace ptin

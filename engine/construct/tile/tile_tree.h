@@ -43,7 +43,7 @@ class TileTree {
 
   /// The tree over points, or over the vertices of a TIN: 4^k leaves with equally many points, one
   /// after the other along the Hilbert curve. Its tiles have the windows of a square raster with
-  /// about as many samples; leaf_number() tells which piece of the curve a leaf is.
+  /// about as many samples; leaf_number() says which piece of the curve a leaf is.
   /// @param points  Their number.
   /// @param side    A leaf holds at most side * side points; none: default_side() of a square of as
   ///                many samples.

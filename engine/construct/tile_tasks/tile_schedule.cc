@@ -118,7 +118,7 @@ Task TileSchedule::take() {
 // What follows.
 
 void TileSchedule::done(const TaskName& name, const TaskResult& result) {
-  progress(name, ~std::uint64_t{0});  // another process does not tell how far it is
+  progress(name, ~std::uint64_t{0});  // another process does not report how far it is
   running_.erase(name);
   const bool was_again = again_.erase(name) > 0;
   if (name.kind == TaskKind::kPlace) {
@@ -266,7 +266,7 @@ void TileSchedule::progress(const TaskName& name, std::uint64_t done) {
 // -------------------------------------------------------------------------------------------------
 // Damage.
 
-/// Of a task that was done again for one of its files: removes the others where their readers are
+/// Removes files of a task that was done again for the sake of another one, where their readers are
 /// done already.
 void TileSchedule::drop_what_nobody_needs(const TaskName& name) {
   const auto drop_after = [&](TileFile file, const TaskName& reader) {

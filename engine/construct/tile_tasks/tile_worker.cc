@@ -22,7 +22,7 @@ std::string path_of(const TaskSetup& setup, const TileId& tile, TileFile file) {
   return setup.folder + "/" + file_name(tile, file);
 }
 
-/// Writes segments: their pages into one file, what is told of them into another.
+/// Writes segments: their pages into one file, what is reported of them into another.
 class SegmentFiles {
  public:
   SegmentFiles(const TaskSetup& setup, const TileId& tile)

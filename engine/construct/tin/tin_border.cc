@@ -44,7 +44,7 @@ TinBorder border_in_memory(std::span<const GridEdge> edges) {
   for (const GridEdge& e : edges) {  // each vertex of a border is where some edge begins
     vertices.push_back(e.from);
   }
-  // Of vertices that share a position the lowest stays.
+  // The lowest of several vertices at one position stays.
   std::sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) {
     return std::pair(key_of(a.position), a.height) < std::pair(key_of(b.position), b.height);
   });

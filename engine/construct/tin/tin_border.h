@@ -20,7 +20,7 @@ struct GridEdge {
 /// A border in memory: vertices in the order of their keys, edges in that of (from, to).
 struct TinBorder {
   std::vector<GridPoint> positions;
-  std::vector<double> heights;  ///< Beside `positions`.
+  std::vector<double> heights;  ///< One for each of `positions`.
   std::vector<BorderEdge> edges;
 };
 

@@ -25,7 +25,7 @@ using KeySet = std::unordered_set<VertexKey>;
 struct Patch {
   std::vector<GridVertex> vertices;       ///< In the order of their keys.
   std::vector<GridPoint> positions;       ///< Those of `vertices`.
-  std::vector<std::uint8_t> is_complete;  ///< Beside `vertices`: 1 where all triangles are here.
+  std::vector<std::uint8_t> is_complete;  ///< 1 for vertices all of whose triangles are here.
   std::vector<Corners> triangles;
 
   [[nodiscard]] VertexId number(VertexKey key) const { return vertex_number(vertices, key); }

@@ -104,7 +104,7 @@ struct NamedVertex {
 
 /// A corner of a face, which names its vertex.
 struct NamedCorner {
-  std::int64_t id = 0;      ///< Of the vertex.
+  std::int64_t id = 0;      ///< The vertex's id.
   std::uint64_t place = 0;  ///< 4 f + c for corner c (0 to 3) of face f of the file.
   friend auto operator<=>(const NamedCorner&, const NamedCorner&) = default;
 };

@@ -97,7 +97,7 @@ std::size_t begin_of_cut(const Quad& quad) {
 
 /// Turns triangles that are clockwise in their file, and collects what is wrong with them. Programs
 /// write some triangles the one way round and some the other; what comes out is a terrain where they
-/// lie beside one another, and the border tells where they do not.
+/// lie beside one another, and the border shows where they do not.
 class Orientations {
  public:
   /// Returns `t` as it is to be.

@@ -32,7 +32,7 @@ namespace ptin {
 
 /// A triangle that holds its corners, so that it needs no list of vertices.
 struct GridTriangle {
-  std::uint64_t place = 0;            ///< Of the first corner, along the curve (PointOrder).
+  std::uint64_t place = 0;            ///< Place of the first corner along the curve (PointOrder).
   std::array<GridVertex, 3> corners;  ///< In turn, from the one with the smallest key on.
 
   [[nodiscard]] std::int64_t area() const noexcept;  ///< orient() of its corners: twice the area.

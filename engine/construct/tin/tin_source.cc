@@ -107,7 +107,7 @@ class HullFiller {
         },
         stop_);
     border_.finish();
-    // Where triangles are wrong by themselves, faults of the border would tell nothing more.
+    // Where triangles are wrong by themselves, faults of the border would say nothing more.
     faults_.refuse(map_, path_);
   }
 

@@ -120,7 +120,7 @@ class TinTriangles {
   ConvexHull hull_;
   bool codes_are_whole_ = false;
   std::unique_ptr<RecordFile<GridTriangle>> surface_, voids_;
-  std::unique_ptr<RecordFile<std::uint64_t>> places_;  ///< Of all vertices, along the curve.
+  std::unique_ptr<RecordFile<std::uint64_t>> places_;  ///< Places of all vertices along the curve.
 };
 
 }  // namespace ptin

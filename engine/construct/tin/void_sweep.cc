@@ -33,7 +33,7 @@ using Triangles = std::function<void(const std::array<GridVertex, 3>&)>;
 
 /// The line meets one end of a border edge.
 struct Event {
-  VertexKey at = 0, other = 0;  ///< Of this end and of the other one.
+  VertexKey at = 0, other = 0;  ///< Keys of this end and of the other one.
   double height = 0.0, other_height = 0.0;
   std::uint32_t is_upward = 0;  ///< 1: the edge goes from its lower to its upper end.
 

@@ -165,7 +165,7 @@ class HighestSearch final : private BestStarVisitor {
     }
   }
 
-  /// Of equally high points takes the one farthest south, then farthest west.
+  /// Among equally high points the one farthest south counts, then farthest west.
   void look_at_border(const LivingTriangle& t) {
     std::array<ValuedPlace, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -23,7 +23,7 @@ struct PointOnCurve {
 /// Points that are looked for together: on the grid, and mostly close to each other.
 struct PointGroup {
   std::span<const PointOnCurve> points;
-  std::span<LocatedPoint> answers;  ///< Of all points of the request, by PointOnCurve::index.
+  std::span<LocatedPoint> answers;  ///< One for each point of the request, by PointOnCurve::index.
   const Detail& detail;
   QueryContext& context;
 

@@ -23,7 +23,7 @@ namespace ptin {
 struct PartRequest {
   std::optional<Region> region;  ///< What to look at, map units; none: everything.
   DetailRequest detail;          ///< The TIN of which the parts are, the same for every region.
-  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Of one part.
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Limits of one part.
 };
 
 /// The parts of a TIN, one after the other. Threads: one owner.

@@ -33,7 +33,7 @@ struct CellRecord {
   VertexSplit split;
   std::uint32_t page;          ///< Modulo 2^32, for faults.
   std::uint32_t degree;        ///< Corners of its ring.
-  std::uint64_t first_corner;  ///< Of its ring, among all of the cell.
+  std::uint64_t first_corner;  ///< First corner of its ring, among all of the cell.
 };
 
 /// About so many corners have rings at most, over a page.
@@ -119,7 +119,7 @@ class HierarchyCheck {
   std::uint64_t dying_ = 0;     ///< Triangles of stars and T0 that are said to die.
   std::uint64_t deaths_ = 0;    ///< Triangles that a record replaces.
 
-  // Of the cell at hand:
+  // The cell at hand:
   std::vector<CellRecord> records_;
   std::vector<RingCorner> corners_;
   std::vector<std::uint32_t> order_;
@@ -405,7 +405,7 @@ float HierarchyCheck::death_of(TriangleId t, const VertexSplit& r, const Star& s
   for (const RingCorner& c : ring) {
     if (own < 3 && c.position == corner[(own + 1) % 3]) return c.death;
   }
-  return kLivesOn;  // its star is another than its split makes, which is told of the maker
+  return kLivesOn;  // its star is another than its split makes, which is reported of the maker
 }
 
 void HierarchyCheck::count_deaths(const CellRecord& r) {

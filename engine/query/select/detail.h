@@ -52,7 +52,7 @@ class Detail {
   /// between records of one error.
   [[nodiscard]] bool is_by_error() const noexcept { return !last_; }
   /// The error up to which triangles have died at the level: tolerance(), or the error of the last
-  /// record kept. Of those that die at the latter, the records kept tell.
+  /// record kept. Which triangles die at the latter, the records kept decide.
   [[nodiscard]] double level() const noexcept { return last_ ? last_->error : tolerance_; }
   /// True when the level keeps the record.
   [[nodiscard]] bool keeps(const RecordPlace& record) const noexcept {

@@ -42,8 +42,8 @@ class PolygonSides {
     });
   }
 
-  /// Whether an odd number of rings surround a place. Of places within the slack of a side the answer
-  /// is either.  Cost: the sides that reach its y, or nearly so.
+  /// Whether an odd number of rings surround a place. Within the slack of a side the answer is
+  /// either. Cost: the sides that reach its y, or nearly so.
   [[nodiscard]] bool surround(MapPoint p) const;
 
  private:

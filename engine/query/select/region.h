@@ -125,7 +125,7 @@ class GridRegion {
 
   Kind kind_ = Kind::kRectangle;
   double min_x_ = 0, min_y_ = 0, max_x_ = 0,
-         max_y_ = 0;  ///< Of the rectangle, or around all edges; widened.
+         max_y_ = 0;  ///< The rectangle, or a box around all edges; widened.
   std::vector<Edge> edges_;
   BinsAlongY bins_;  ///< Of the edges.
   double widening_ = 0;

@@ -99,7 +99,7 @@ struct Viewshed {
 /// memory, that of the raster included, is known before the sweep begins.
 ///
 /// At a level of detail the full TIN lies within d = certified_deviation * distance / radius of the
-/// TIN that is swept. Two more sweeps tell what is certain:
+/// TIN that is swept. Two more sweeps find what is certain:
 /// - A target is certainly hidden when it is hidden even with all before it lowered by d and the
 ///   target raised by d.
 /// - A target is certainly visible when it is visible even with all before it raised by d and the

@@ -42,7 +42,7 @@ class ConvexPiece {
 
   [[nodiscard]] std::span<const MapPoint> corners() const { return {corners_.data(), size_}; }
   [[nodiscard]] bool is_empty() const { return size_ < 3; }
-  /// Of the triangle of corners 0, i and i + 1, square grid units; not negative.
+  /// Area of the triangle of corners 0, i and i + 1, square grid units; not negative.
   [[nodiscard]] double fan_area(std::size_t i) const {
     return std::fmax(0.0, cross(corners_[0], corners_[i], corners_[i + 1]) / 2);
   }

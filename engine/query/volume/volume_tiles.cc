@@ -122,7 +122,7 @@ class LevelWorker final : public TileWorker, private LivingVisitor {
   [[nodiscard]] std::uint64_t bytes_wanted() const override { return bytes_wanted_; }
 
  private:
-  /// Of the sides of a triangle, while their array grows.
+  /// Bytes of the sides of a triangle, while their array grows.
   static constexpr std::uint64_t kBytesATriangle = 2 * 3 * sizeof(BorderSide);
 
   /// Without a border nothing is kept; tiles are cut for other threads alone.

@@ -107,7 +107,7 @@ struct Crossing {
 
 /// A point of a line, and the surface there, apart from a mesh.
 struct LinePoint {
-  WeightedCodes ground;  ///< Of no vertex where there is no surface.
+  WeightedCodes ground;  ///< Count 0 where there is no surface.
   Int128 numerator = 0;  ///< As Crossing.
   Int128 denominator = 1;
 
