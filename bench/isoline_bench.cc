@@ -17,6 +17,7 @@
 #include "bench/support/opened_store.h"
 #include "engine/query/isoline/isoline.h"
 #include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/retrieval.h"
 #include "engine/query/select/total_order.h"

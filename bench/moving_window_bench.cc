@@ -13,8 +13,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/moving_window.h"
-#include "engine/query/terrain.h"
 
 namespace {
 

@@ -15,11 +15,11 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
-#include "engine/query/terrain.h"
 
 namespace {
 

@@ -172,7 +172,7 @@ void RecordPage::for_each_corner(const RingPlace& place, const Visit& visit) con
   const layout::PageHeader& h = columns_.header();
   const RingShape shape = place.shape;
   const auto fields = [&](const auto& take) {
-    StoredCorner c;
+    RelativeCorner c;
     c.x = with_sign(take(shape.offset_bits), shape.offset_bits);
     c.y = with_sign(take(shape.offset_bits), shape.offset_bits);
     c.height = with_sign(take(shape.height_bits), shape.height_bits);
@@ -254,14 +254,14 @@ bool RecordPage::ring(const PageRun& run, std::uint32_t k, RingPlace& place, con
   const auto height = static_cast<std::int64_t>(own.height);
   const std::uint32_t error = short_bits(r.error);
   const bool is_closed = has_closed_ring(r);
-  RingCheck check((r.flags & VertexSplit::kVertexVoid) == 0);
+  RingCheck check(r.has_height());
   const std::size_t first = out.size();
   out.resize(first + degree);
   RingCorner* const ring = out.data() + first;
   span = {};
   bool is_sound = true;
-  for_each_corner(place, [&](unsigned n, const StoredCorner& c) {
-    check.add({c.x, c.y, c.has_height, c.is_void});
+  for_each_corner(place, [&](unsigned n, const RelativeCorner& c) {
+    check.add(c);
     widen(span, r.u.x + c.x, r.u.y + c.y);
     const std::int64_t ordered = height + c.height;
     const std::uint32_t below = c.death < kFirstAboveBase ? error : c.death - kFirstAboveBase;
@@ -293,12 +293,11 @@ bool RecordPage::admits(const VertexSplit& r, const RingSpan& span) const noexce
   const std::uint32_t lo = ordered_height(d.star_height_lo, heights_.type);
   const std::uint32_t hi = ordered_height(d.star_height_hi, heights_.type);
   const std::uint32_t own = ordered_height(r.height, heights_.type);
-  const bool is_void = (r.flags & VertexSplit::kVertexVoid) != 0;
   return d.star_min_x <= std::min<std::int64_t>(span.min_x, r.u.x) &&
          d.star_min_y <= std::min<std::int64_t>(span.min_y, r.u.y) &&
          std::max<std::int64_t>(span.max_x, r.u.x) <= d.star_max_x &&
          std::max<std::int64_t>(span.max_y, r.u.y) <= d.star_max_y &&
-         (is_void || (lo <= own && own <= hi)) &&
+         (!r.has_height() || (lo <= own && own <= hi)) &&
          (span.low > span.high || (lo <= span.low && span.high <= hi)) &&
          d.death_min <= span.least_death;
 }

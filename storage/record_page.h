@@ -39,7 +39,7 @@ struct RingPlace {
 
 /// What the corners of a ring, and its triangles, span.
 struct RingSpan {
-  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Of the corners, grid units.
+  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Box of the corners, grid units.
   std::int64_t max_x = INT64_MIN, max_y = INT64_MIN;
   std::uint32_t low = UINT32_MAX, high = 0;  ///< Ordered heights; low > high: no corner has one.
   std::uint32_t least_death = UINT32_MAX;    ///< As death_bits().
@@ -55,7 +55,7 @@ struct OrderedInterval {
 class RecordPage {
  public:
   /// @param path   Borrowed, as the bytes; for messages.
-  /// @param bytes  Of a whole page.
+  /// @param bytes  Bytes of a whole page.
   /// @throws Error corruption  the descriptor or the page's header cannot be what was written, or
   ///                           they disagree on the number of records
   RecordPage(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
@@ -82,7 +82,7 @@ class RecordPage {
   /// grid, and the roi holds u. REQUIRES: all columns of the run are taken, as for what follows.
   [[nodiscard]] bool head(const PageRun& run, std::uint32_t k, VertexSplit& r) const noexcept;
   /// A record. u, w, vl and vr differ and lie in the roi.
-  /// @param place  Of a record not behind this one; becomes that of this record.
+  /// @param place  Place of a record not behind this one; becomes that of this record.
   [[nodiscard]] bool split(const PageRun& run, std::uint32_t k, RingPlace& place,
                            VertexSplit& r) const noexcept;
   /// Appends the ring of a record whose head is `r`: is_star() is true of it.
@@ -94,12 +94,6 @@ class RecordPage {
   [[noreturn]] void report(std::size_t record) const;
 
  private:
-  /// The fields of a corner.
-  struct StoredCorner {
-    std::int64_t x, y, height;
-    std::uint32_t death;
-    bool is_void, has_height;
-  };
   /// Whether the descriptor admits a star.
   [[nodiscard]] bool admits(const VertexSplit& r, const RingSpan& span) const noexcept;
   template <class Bounds>
@@ -164,7 +158,7 @@ class PageRun {
   [[nodiscard]] std::uint64_t at(PageColumn column, std::uint32_t k) const noexcept {
     return numbers_[static_cast<std::size_t>(column)][k];
   }
-  /// The roi. Of a record that is not sound it may be anything.
+  /// The roi; anything for a record that is not sound.
   /// REQUIRES: kX, kY and the four columns of its sides are taken.
   [[nodiscard]] GridBox roi(std::uint32_t k) const noexcept {
     const auto whole = [](std::uint64_t v) {

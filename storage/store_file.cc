@@ -251,8 +251,8 @@ std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAc
 
 std::shared_ptr<const StoreFile> StoreFile::open(std::shared_ptr<RangeSource> source,
                                                  const RemoteCaches& caches) {
-  return std::make_shared<const StoreFileImpl>(std::make_unique<RangedFile>(
-      std::move(source), RangedFileOptions{caches.memory_bytes, caches.folder}));
+  return std::make_shared<const StoreFileImpl>(
+      std::make_unique<RangedFile>(std::move(source), caches));
 }
 
 }  // namespace ptin

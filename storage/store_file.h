@@ -47,16 +47,6 @@ struct SectionInfo {
 
 enum class PageAccess { kMapped, kPread };
 
-/// What is kept of a file that lies elsewhere.
-struct RemoteCaches {
-  /// In memory: the parts used last, at least 1 MiB of them. A round of reading takes up to 6 MiB
-  /// besides.
-  std::uint64_t memory_bytes = std::uint64_t{64} << 20;
-  /// A folder in which what was read is kept for the next opening too; empty: none. A file in it has
-  /// the name of the content, and so is never out of date.
-  std::string folder;
-};
-
 /// An open store. Immutable; shared by any number of queries and threads.
 class StoreFile {
  public:
@@ -64,7 +54,7 @@ class StoreFile {
   /// checksums of header, tables, metadata and T0. Index nodes and record pages are verified when
   /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
   /// whatever the number of records.
-  /// @param announcer  Is told what is read next; null: the kernel is. The store shares it.
+  /// @param announcer  Hears what is read next; null: the kernel does. The store shares it.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
   ///               is no regular file, a stream, or begins like no store at all
   static std::shared_ptr<const StoreFile> open(const std::string& path,

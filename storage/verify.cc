@@ -381,7 +381,7 @@ void Verifier::count(PageId id) {
     errors_.add(r);
     makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
-    if ((r.flags & VertexSplit::kVertexVoid) == 0) {
+    if (r.has_height()) {
       count_height(r.height);
     }
     if (!has_heights_of_header(r)) {

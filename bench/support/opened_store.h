@@ -10,7 +10,7 @@
 #include "bench/support/counters.h"
 #include "bench/support/places.h"
 #include "bench/support/scratch.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::bench {
 

@@ -6,6 +6,7 @@
 #include "engine/query/paper/isoline_extraction.h"
 #include "engine/query/paper/point_location.h"
 #include "engine/query/paper/visibility.h"
+#include "engine/query/questions.h"
 
 namespace ptin {
 
@@ -33,6 +34,15 @@ ProfileResult Terrain::profile(std::span<const MapPoint> line,
 ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
                                const ProfileRequest& request) const {
   return ptin::profile(*this, lines, request);
+}
+
+RasterResult Terrain::raster(const RasterRequest& request, const RasterReceiver& receive) const {
+  return ptin::raster(*this, request, receive);
+}
+
+RasterResult Terrain::raster(const RasterRequest& request, std::span<double> heights,
+                             std::span<PointState> states) const {
+  return ptin::raster(*this, request, heights, states);
 }
 
 HighestResult Terrain::highest(const HighestRequest& request) const {

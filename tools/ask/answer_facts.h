@@ -8,7 +8,7 @@
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/field.h"
 #include "tools/region/straight_sides.h"
 

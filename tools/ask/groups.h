@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/parameter.h"
 
 namespace ptin::ask {

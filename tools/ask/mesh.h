@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/field.h"
 #include "tools/formats/mesh.h"
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/facts/quantity.h"
 
 namespace ptin::ask {

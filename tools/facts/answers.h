@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 

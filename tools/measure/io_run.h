@@ -19,7 +19,7 @@ namespace ptin::tools {
 
 class IoRun {
  public:
-  /// Opens the file, and finds out whether it can be made cold and what the system tells.
+  /// Opens the file, and finds out whether it can be made cold and what the system reports.
   /// @throws Error as Terrain::open
   explicit IoRun(const IoRequest& request);
 

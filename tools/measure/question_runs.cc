@@ -13,7 +13,7 @@ namespace {
 /// The rounds of one kind of question.
 struct Rounds {
   QuestionKind kind;
-  std::size_t first_row;  ///< Of its rows, one a way, in the report.
+  std::size_t first_row;  ///< First of its rows in the report, one a way.
   std::uint64_t done = 0;
   double seconds = 0.0;
   bool is_over = false;

@@ -80,7 +80,7 @@ class ThreadRuns {
   IoRun& run_;
   IoReport& report_;
   PartTime time_;
-  std::uint64_t numbers_ = 0;  ///< Of questions that were asked.
+  std::uint64_t numbers_ = 0;  ///< Number of questions asked.
 };
 
 void ThreadRuns::run_once(ThreadFigures& figures, std::uint64_t first_number) {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/field.h"
 #include "tools/formats/mesh.h"
 #include "tools/region/straight_sides.h"

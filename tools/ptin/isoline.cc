@@ -12,7 +12,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/mesh/link.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
 #include "tools/ask/isolines.h"
 #include "tools/error_status.h"

@@ -15,7 +15,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/ptin/answer_output.h"

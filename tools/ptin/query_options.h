@@ -13,7 +13,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/memory_units.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/answer_facts.h"
 #include "tools/ask/groups.h"
 #include "tools/ptin/command.h"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ask/answer_facts.h"
 #include "tools/http/response.h"
 #include "tools/serve/endpoint.h"

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/ask/parameter.h"
+#include "engine/query/questions.h"
 #include "tools/http/request.h"
 #include "tools/serve/client_json.h"
 

@@ -24,7 +24,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Of a vertex of a boundary without heights: any other height is lower, and stands.
+/// Height of a vertex of a boundary without heights: any other is lower, and stands.
 constexpr double kNoHeight = std::numeric_limits<double>::infinity();
 
 /// A height as the file stores it.
@@ -39,7 +39,7 @@ double stored(double height, const HeightEncoding& heights) {
   return heights.height_of_code(std::nearbyint((height - heights.offset) / heights.step));
 }
 
-/// Refuses files other than those that the store was built with, as far as their number tells.
+/// Refuses files other than those that the store was built with, as far as their number shows.
 void check_files(const LineInputs& inputs, const nlohmann::json& options) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);
@@ -106,8 +106,8 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
             {place_of(line[i - 1], is_laid), p, !is_boundary && !is_laid, is_boundary});
     }
   };
-  const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
-                      "a build with that layer alone"};
+  const LayerWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
+                       "a build with that layer alone"};
   const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
   is_flat_ = is_flat_ || is_flat;
   is_boundary_flat_ = is_boundary && is_flat;

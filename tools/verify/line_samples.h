@@ -52,8 +52,8 @@ class LineSamples {
   /// without heights that rounding to the grid decides.
   [[nodiscard]] bool holds(GridPoint p) const;
   [[nodiscard]] bool has_boundary() const { return has_boundary_; }
-  /// The boundary has no heights: it tells inside from outside, and has no samples; or breaklines have
-  /// none, which tell nothing.
+  /// The boundary has no heights: it divides inside from outside, and has no samples; or breaklines
+  /// have none, which say nothing.
   [[nodiscard]] bool is_flat() const { return is_flat_; }
   /// Takes a sample along: it divides the pieces that it lies on, at its own height.
   void divide_at(GridPoint p);
@@ -81,7 +81,7 @@ class LineSamples {
   std::vector<LinePiece> pieces_;  ///< Sorted by their least x.
   std::int64_t widest_ = 0;        ///< The largest width of a piece.
   bool has_boundary_ = false, is_flat_ = false, is_boundary_flat_ = false;
-  std::vector<std::vector<LinePiece>> bands_;  ///< Of the boundary, by rows of the terrain.
+  std::vector<std::vector<LinePiece>> bands_;  ///< The boundary, by rows of the terrain.
   std::vector<std::pair<std::size_t, GridPoint>> divisions_;
 };
 

@@ -34,7 +34,7 @@ struct RasterFile {
   GDALRasterBand* heights = nullptr;  ///< A band of `data`, as the next one.
   GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
   /// A VRT once more, NaN where no source covers it.
-  std::unique_ptr<GDALDataset, CloseDataset> backed{};
+  GDALDatasetUniquePtr backed{};
   std::optional<double> nodata;  ///< The value that the file declares.
   int bits_of_float = 32;        ///< Bits of a value of Float32.
   double scale = 1.0;

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/crs/crs_facts.h"
 #include "engine/construct/read/input_kind.h"
+#include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
 #include "tools/facts/human.h"

@@ -31,7 +31,7 @@ namespace ptin::tools {
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
   PointChoice points;
-  PointMerge duplicates = PointMerge::kMean;  ///< Of points that fall together.
+  PointMerge duplicates = PointMerge::kMean;  ///< How points that fall together are merged.
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
   /// Samples outside were left out; map units: min x, min y, max x, max y.
@@ -128,9 +128,9 @@ struct SampleResources {
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
-/// Refuses what is the source of another terrain as far as a short look tells: the grid and the extent
-/// of rasters; of points, that none of the first few thousand lies on the terrain. Cheap, whatever
-/// the size of the source.
+/// Refuses what is the source of another terrain as far as a short look shows: the grid and the
+/// extent of rasters; of points, that none of the first few thousand lies on the terrain. Cheap,
+/// whatever the size of the source.
 /// @throws Error as open_samples()
 void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
                      const SampleResources& resources);

@@ -8,6 +8,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
+#include "engine/query/shape/tiler.h"
 #include "engine/stop.h"
 #include "tools/facts/human.h"
 #include "tools/verify/border_lines.h"
@@ -88,7 +89,7 @@ class Verifier {
   double slack_ = 0.0;
   bool is_grid_ = false;  ///< The source is a raster.
   AgainstReport report_;
-  std::optional<BorderLines> border_;  ///< Of the source, in and around the window at hand.
+  std::optional<BorderLines> border_;  ///< The source's border, in and around the window at hand.
   std::mt19937_64 random_{20260101};
 };
 
@@ -111,28 +112,19 @@ std::string Verifier::place_text(double x, double y) const {
   return text;
 }
 
+/// A raster is cut into squares of samples; points are halved until few enough are in each window.
 std::vector<GridBox> Verifier::windows() {
-  // A raster is cut into squares of samples; points are halved until few enough are in each window.
-  std::vector<GridBox> boxes;
-  std::vector<GridBox> open{facts_.bounds};
   is_grid_ = source_.read(box_of(GridPoint{facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
-  while (!open.empty()) {
+  std::vector<GridBox> boxes;
+  work_in_parts(facts_.bounds, [&](const GridBox& box) {
     stop_if_asked(options_.stop, "verification");
-    const GridBox box = open.back();
-    open.pop_back();
-    const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
-    const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
-    const bool small =
-        is_grid_ ? std::max(width, height) < options_.window_side
-                 : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
-    if (small) {
-      boxes.push_back(box);
-      continue;
-    }
-    const auto [low, high] = halves_of(box);
-    open.push_back(high);
-    open.push_back(low);
-  }
+    const std::int64_t side =
+        std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
+    const bool is_small = is_grid_ ? side < options_.window_side
+                                   : side < 2 || source_.count(box) <= options_.samples_per_window;
+    if (is_small) boxes.push_back(box);
+    return is_small;
+  });
   return boxes;
 }
 
@@ -378,7 +370,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
 }
 
 /// A file that left detail out does not have its lone points any more, so drop_lone_points() does not
-/// see them. The points around tell: all within four times the longest edge.
+/// see them. The points around decide: all within four times the longest edge.
 bool Verifier::may_be_left_out_as_lone(const SourceSample& sample) {
   if (!choices_.max_edge || facts_.base_error == 0 || source_.lines() != nullptr) return false;
   const GroundSteps steps = ground_steps(facts_.map, ground_, static_cast<double>(sample.y));

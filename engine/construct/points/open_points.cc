@@ -40,7 +40,7 @@ class TextPoints final : public PointStream {
     }
     facts_.units = reader_.units();
     if (facts_.units.plane == "degree") {
-      facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
+      facts_.units.plane.clear();  // Only a CRS says what degrees are on the ground.
     }
     take_comments(nodata.has_value());
     reader_.declared().tell(path, warnings_);
@@ -79,7 +79,7 @@ class TextPoints final : public PointStream {
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
  private:
-  /// Counts a row that is no point; the first of them is told of.
+  /// Counts a row that is no point; the first of them is reported.
   void skip(std::uint64_t line, const std::string& fault) {
     if (skipped_.count++ == 0) {
       skipped_.kind = "invalid_rows";
@@ -117,7 +117,7 @@ class TextPoints final : public PointStream {
   bool is_whole_;
   TakeInvalidRow invalid_row_;
   XyzReader reader_;
-  SourceWarning skipped_;  ///< Of the rows that were passed over.
+  SourceWarning skipped_;  ///< What to say of the rows that were passed over.
   PointStreamFacts facts_;
   SourceWarnings warnings_;
   std::optional<double> nodata_;  ///< The one that comments declare.

@@ -46,7 +46,7 @@ std::string XyzReader::fault() const {
   return rows_.fault_of_no_number(role);
 }
 
-bool XyzReader::next(XyzPoint& point) {
+bool XyzReader::next(SourcePoint& point) {
   while (rows_.next()) {
     if (!table_.is_misfit() && is_number(0, point.x) && is_number(1, point.y) &&
         is_number(2, point.z)) {

@@ -14,8 +14,6 @@
 
 namespace ptin {
 
-using XyzPoint = SourcePoint;
-
 /// Reads points from CSV or XYZ text (read/text_table.h). The columns of x, y and z are those that
 /// the caller or a header names, else the first three (read/text_rows.h); further columns are
 /// passed over. Numbers have decimal points. Not thread-safe.
@@ -25,7 +23,7 @@ class XyzReader {
   ///                 a header.
   /// @throws Error as TextTable; invalid_argument  `columns` lacks a coordinate
   /// @param part     As of TextTable.
-  /// @param invalid_row  Rows that are no points are passed over, and told here; empty: they are
+  /// @param invalid_row  Rows that are no points are passed over and reported here; empty: they are
   ///                     errors.
   explicit XyzReader(std::string path, std::vector<std::string> columns = {},
                      const PointPart& part = {}, TakeInvalidRow invalid_row = {});
@@ -36,9 +34,9 @@ class XyzReader {
   /// @throws Error as TextRows::next(); invalid_argument  no number, NaN or an infinite one where a
   ///                                    number belongs. The context is "path:line".
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
-  [[nodiscard]] bool next(XyzPoint& point);
+  [[nodiscard]] bool next(SourcePoint& point);
 
-  /// The units as TextRows tells them.
+  /// The units as TextRows gives them.
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
@@ -51,7 +49,7 @@ class XyzReader {
 
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
-  /// What the rows tell that were read.
+  /// What the rows say that were read.
   [[nodiscard]] RowsOfPart rows() const {
     const RowNumbering numbering = rows_.numbering();
     return {numbering, table_.lines(), numbering.rows == 0 ? 0 : table_.line()};

@@ -20,7 +20,7 @@ struct GroundStretch {
   bool is_point = false;
   bool is_vertex = false;                 ///< A point, and a corner of the triangle.
   double from = 0.0, to = 0.0;            ///< Shares of the way along the segment.
-  double from_code = 0.0, to_code = 0.0;  ///< Of the ground at both; set on surface.
+  double from_code = 0.0, to_code = 0.0;  ///< Ground at both ends; set on surface.
 };
 
 /// Gathers the stretches of the segments of a path. Threads: one owner.

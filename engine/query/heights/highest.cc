@@ -13,8 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/heights/polygon_border.h"
-#include "engine/query/heights/window_clip.h"
+#include "engine/query/heights/region_border.h"
 #include "engine/query/living/level_stars.h"
 #include "engine/query/select/detail.h"
 #include "storage/packed_rtree.h"
@@ -52,16 +51,15 @@ class HighestSearch final : private BestStarVisitor {
     if (request.region) {
       region_.emplace(*request.region, facts_.map);
       filter_.box = region_->bounds();
-      if (const auto* polygon = std::get_if<Polygon>(&*request.region)) {
-        border_.emplace(*polygon, facts_.map);
-      } else if (!std::holds_alternative<Window>(*request.region)) {
+      if (!std::holds_alternative<Window>(*request.region) &&
+          !std::holds_alternative<Polygon>(*request.region)) {
         throw Error(ErrorCode::invalid_argument,
                     "the highest point is that of a window or a polygon; a point or a segment has "
                     "no inside");
       }
+      border_.emplace(*request.region, facts_.map, facts_.bounds);
     }
     set_level(detail_, filter_);
-    window_ = window_on_grid();
   }
 
   HighestResult run() {
@@ -107,7 +105,7 @@ class HighestSearch final : private BestStarVisitor {
 
   /// The highest vertex of these stars, at the least key in their box.
   [[nodiscard]] Merit bound(const StarAttributes& a) const override {
-    if (is_empty(a.heights) || (border_ && !region_->meets(a.box))) {
+    if (is_empty(a.heights) || (region_ && !region_->meets(a.box))) {
       return kNoMerit;
     }
     return {request_.lowest ? -a.heights.lo : a.heights.hi, key_of({a.box.min_x, a.box.min_y})};
@@ -167,47 +165,32 @@ class HighestSearch final : private BestStarVisitor {
     }
   }
 
-  /// Of equally high points takes the one farthest south, then farthest west.
+  /// Among equally high points the one farthest south counts, then farthest west.
   void look_at_border(const LivingTriangle& t) {
-    std::array<ClippedCorner, 3> corners;
+    std::array<ValuedPlace, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const GridPoint p = t.corner[i].position;
       corners[i] = {static_cast<double>(p.x), static_cast<double>(p.y), value_of(t.corner[i])};
     }
-    const auto is_before = [](const ClippedCorner& a, const ClippedCorner& b) {
+    const auto is_before = [](const ValuedPlace& a, const ValuedPlace& b) {
       return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     };
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
                 corners.end());
-    std::vector<ClippedCorner> shared;
-    if (border_) {
-      border_->visit_shared(corners, shared);
-    } else {
-      shared = clipped({corners.begin(), corners.end()}, window_);
-    }
-    for (const ClippedCorner& c : shared) {
+    std::vector<ValuedPlace> shared;
+    border_->visit_shared(corners, shared);
+    for (const ValuedPlace& c : shared) {
       if (c[2] > on_border_[2] || (c[2] == on_border_[2] && is_before(c, on_border_))) {
         on_border_ = c;
       }
     }
   }
 
-  [[nodiscard]] GridWindow window_on_grid() const {
-    if (request_.region) {
-      if (const auto* window = std::get_if<Window>(&*request_.region)) {
-        return on_grid(*window, facts_.map);
-      }
-    }
-    const GridBox& b = facts_.bounds;
-    return {static_cast<double>(b.min_x), static_cast<double>(b.min_y),
-            static_cast<double>(b.max_x), static_cast<double>(b.max_y)};
-  }
-
   [[nodiscard]] bool region_meets_domain() const {
     const Tin& t0 = terrain_.t0();
-    if (!border_) return meets_domain(window_, t0, facts_.bounds);
     return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
-      return region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
+      return !region_ ||
+             region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
     });
   }
 
@@ -239,11 +222,10 @@ class HighestSearch final : private BestStarVisitor {
   Detail detail_;
   LevelStars stars_;
   std::optional<GridRegion> region_;
-  std::optional<PolygonBorder> border_;  ///< Of a polygon.
-  GridWindow window_{};                  ///< Of a window, or of the terrain.
+  std::optional<RegionBorder> border_;
   LivingFilter filter_;
   std::set<HighCandidate> best_;
-  ClippedCorner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
+  ValuedPlace on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };
 
 }  // namespace

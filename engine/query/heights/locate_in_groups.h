@@ -9,7 +9,7 @@
 #include <span>
 
 #include "engine/query/heights/locate.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 
@@ -23,7 +23,7 @@ struct PointOnCurve {
 /// Points that are looked for together: on the grid, and mostly close to each other.
 struct PointGroup {
   std::span<const PointOnCurve> points;
-  std::span<LocatedPoint> answers;  ///< Of all points of the request, by PointOnCurve::index.
+  std::span<LocatedPoint> answers;  ///< One for each point of the request, by PointOnCurve::index.
   const Detail& detail;
   QueryContext& context;
 

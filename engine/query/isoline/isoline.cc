@@ -18,7 +18,20 @@ namespace ptin {
 namespace {
 
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
-constexpr std::uint64_t kTileBytesOfOneThread = std::uint64_t{256} << 20;
+
+/// Shares of the memory, in eighths. While tiles are traced it is that of the tiles, of the pieces,
+/// which cannot be put on disk, and of points. While lines are cut at a region, what the tiles have
+/// given back is that of the cut pieces, of their points and of the line at hand; where nothing is
+/// cut, of the line alone.
+constexpr std::uint64_t kShareOfTiles = 4, kShareOfPieces = 3, kShareOfPoints = 1;
+constexpr std::uint64_t kShareOfCutPieces = 2, kShareOfCutLine = 1, kShareOfLine = 4;
+
+std::uint64_t bytes_of_share(const IsolineRequest& request, std::uint64_t eighths) {
+  return request.limits.share(eighths, 8).memory_bytes;
+}
+
+constexpr std::uint64_t kTileBytes = 8 * kMiB;
+constexpr std::uint64_t kTileBytesOfOneThread = 256 * kMiB;
 /// Bytes of a point while its line is written: the point itself, in a geometry, and as bytes of a
 /// format.
 constexpr std::uint64_t kBytesAPointOut = 80;
@@ -34,7 +47,7 @@ class IsolineExtraction {
         levels_(request.levels, store_.facts().heights),
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
-        result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
+        result_(PointStore(bytes_of_share(request, kShareOfPoints), request.temporary_folder)) {
     if (!request.region) return;
     region_.emplace(*request.region, store_.facts().map);
     if (const auto* window = std::get_if<Window>(&*request.region)) {
@@ -73,20 +86,16 @@ class IsolineExtraction {
   }
 
  private:
-  /// Tiles take half of the memory. Pieces take three eighths, since they cannot be put on disk;
-  /// points take the rest.
   void trace_terrain(const TraceTerrain& trace) {
-    TileTraceRequest request{levels_,
-                             detail_,
-                             region_ ? &*region_ : nullptr,
-                             request_.limits.memory_bytes / 2,
-                             request_.limits.memory_bytes / 8 * 3,
-                             request_.threads,
-                             request_.limits.stop};
+    TileTraceRequest request{
+        levels_,
+        detail_,
+        region_ ? &*region_ : nullptr,
+        {bytes_of_share(request_, kShareOfTiles),
+         request_.threads <= 1 ? kTileBytesOfOneThread : kTileBytes, request_.threads},
+        bytes_of_share(request_, kShareOfPieces),
+        request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
-    if (request_.threads <= 1) {
-      request.tile_bytes = kTileBytesOfOneThread;
-    }
     TileTraces traces = trace(request, result_.points_, context_.cost);
     result_.pieces_ = std::move(traces.pieces);
     result_.crossed = traces.counts;
@@ -105,7 +114,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > request_.limits.memory_bytes / (clip_ ? 8 : 2)) {
+    if (bytes > bytes_of_share(request_, clip_ ? kShareOfCutLine : kShareOfLine)) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +
@@ -117,7 +126,7 @@ class IsolineExtraction {
   }
 
   void cut_at_region() {
-    PointStore points(request_.limits.memory_bytes / 8, request_.temporary_folder);
+    PointStore points(bytes_of_share(request_, kShareOfPoints), request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
     std::vector<MapPoint> line;
@@ -131,7 +140,7 @@ class IsolineExtraction {
         piece.ring = joined.ring && clipped.whole;
         piece.first = points.size();
         piece.count = static_cast<std::uint32_t>(part.size());
-        if ((pieces.size() + 1) * kBytesAPiece > request_.limits.memory_bytes / 4) {
+        if ((pieces.size() + 1) * kBytesAPiece > bytes_of_share(request_, kShareOfCutPieces)) {
           throw Error(ErrorCode::resource_exhausted,
                       "the region cuts the isolines into more than " +
                           std::to_string(pieces.size()) +

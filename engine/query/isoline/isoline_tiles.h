@@ -19,20 +19,19 @@
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/tiler.h"
 
 namespace ptin {
 
 struct TileTraceRequest {
   const LevelSet& levels;
   const Detail& detail;
-  const GridRegion* region;    ///< Only triangles that meet it are traced; null: all.
-  std::uint64_t memory_bytes;  ///< For the tiles in work, on all threads together.
-  std::uint64_t piece_bytes;   ///< For the pieces, kBytesAPiece each.
-  int threads;
+  const GridRegion* region;  ///< Only triangles that meet it are traced; null: all.
+  /// Pages on the borders of tiles are read for each of them, so one thread is better off with large
+  /// tiles; several share many small ones out.
+  TileLimits tiles;
+  std::uint64_t piece_bytes;  ///< For the pieces, kBytesAPiece each.
   std::stop_token stop;
-  /// Bytes of a tile at most, where that is possible. Pages on the borders of tiles are read for each
-  /// of them, so one thread is better off with large tiles; several share many small ones out.
-  std::uint64_t tile_bytes = std::uint64_t{8} << 20;
   bool counts_vertices = false;  ///< TraceScope::counts_vertices.
 };
 

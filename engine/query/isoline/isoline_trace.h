@@ -43,7 +43,7 @@ struct TracedPieces {
 /// Traces every level through triangles, which come in any order, with higher ground on the right. A
 /// line ends where the surface does, at a border or a void, and where the triangles do.
 ///
-/// Of a star the lines are followed from triangle to triangle as these lie side by side around its
+/// Lines are followed within a star from triangle to triangle, as these lie side by side around its
 /// centre: a chain. Chains are joined by the edges on which they end, those that came one after the
 /// other first.
 /// Threads: one owner. What was allocated is used again.
@@ -110,7 +110,7 @@ class LineTracer {
   ChainSet chains_;  ///< What batches were joined to.
   TracedPieces traced_;
   KeyTable vertices_;
-  /// Of the star at hand: its centre, its corners, and of each triangle whether it is traced.
+  /// The star at hand: its centre, its corners, and of each triangle whether it is traced.
   Corner centre_{};
   std::array<Corner, layout::kMostDegree + 1> corners_{};
   std::array<bool, layout::kMostDegree + 1> is_wanted_{}, is_crossed_{};

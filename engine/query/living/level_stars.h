@@ -32,7 +32,7 @@ class LevelStars {
 
   /// Reads what the filter asks for of a page, in the place of the page before.
   /// @param page    A PageId, or a page that the directory named.
-  /// @param filter  Of the level of detail (set_level()).
+  /// @param filter  Filter of the level of detail (set_level()).
   /// @throws Error corruption, io_error
   template <class Page>
   void read(const Page& page, const LivingFilter& filter, QueryContext& context) {

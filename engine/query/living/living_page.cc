@@ -24,7 +24,7 @@ constexpr std::uint64_t kOneRingRun = (std::uint64_t{1} << layout::kRingRun) - 1
 struct Shapes {
   using Column = std::array<std::uint64_t, kRun>;
   Column degree, offset_bits, height_bits, death_bits, bit;  // NOLINT: written before read
-  Column living;  ///< Bit i: triangle i lives. Of the first 64.
+  Column living;  ///< Bit i: triangle i of the first 64 lives.
   unsigned common_bits;
 
   [[nodiscard]] std::uint64_t corner_bits(std::uint32_t k) const noexcept {
@@ -51,12 +51,12 @@ struct Star {
   LivingStar star;
   std::uint32_t error;     ///< Short bits.
   bool is_closed;          ///< As has_closed_ring().
-  std::int64_t height;     ///< Ordered; of u, or what the corners' heights are told from.
-  std::int64_t low, high;  ///< Of the corners, at most.
+  std::int64_t height;     ///< Ordered; of u, or what the corners' heights are relative to.
+  std::int64_t low, high;  ///< Limits of the corners' heights.
 };
 
-/// Takes the corners of a ring apart. A corner takes up to 112 bits, nearly always fewer than 57:
-/// then one load gets all of it.
+/// Takes the corners of a ring apart. A corner takes up to 114 bits, nearly always at most 57: then
+/// one load gets all of it.
 class Corners {
  public:
   Corners(const Shapes& shapes, std::uint32_t k, const layout::PageHeader& h) noexcept
@@ -67,6 +67,7 @@ class Corners {
         no_height_(h.no_height_bits) {}
 
   [[nodiscard]] Corner at(const std::byte* bytes, std::size_t bit) const noexcept {
+    // No single field has more than 33 bits (kMostHeightWidth), so one load gets each by itself.
     if (2 * offset_ + height_ + death_ + void_ + no_height_ > kMostFieldBits) [[unlikely]] {
       return fields([&](unsigned width) {
         const std::uint64_t field = read_bits(bytes, bit, width);
@@ -166,6 +167,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
     }
     read_shapes(run, left, shapes);
     left = find_living(run, left, shapes);
+    // Deaths were looked at first: other numbers are taken only for the stars that are left.
     for (const PageColumn c : kHead) {
       run.take_some(c, left);
     }
@@ -174,6 +176,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
     }
     for (; left != 0; left &= left - 1) {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+      // The first record that cannot be ends all: what was appended of the page is dropped with it.
       if (!shapes.is_sound(k, page_.columns().rings_end()) || !read_star(run, k, star) ||
           !take_star(shapes, star, k, out)) [[unlikely]] {
         return run.first() + k;
@@ -189,6 +192,7 @@ void LivingPage::read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& o
   const std::byte* const bytes = page_.bytes();
   out.common_bits = columns.common_bits();
   for (std::uint32_t begin = 0; begin < run.count(); begin += layout::kRingRun) {
+    // A ring begins where the one before ends, so a record needs the shapes of its whole run.
     if ((wanted >> begin & kOneRingRun) == 0) {
       continue;
     }
@@ -203,6 +207,8 @@ void LivingPage::read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& o
     read(PageColumn::kDeathBits, out.death_bits);
     out.bit[begin] = columns.run_begin(bytes, (run.first() + begin) / layout::kRingRun);
     for (std::uint32_t k = begin + 1; k < end; ++k) {
+      // A damaged shape moves the rings behind it. No bit is read before is_sound() has held a
+      // ring's end against that of all rings; eight bytes follow these, so loads stay in the page.
       out.bit[k] = out.end(k - 1);
     }
   }
@@ -210,7 +216,9 @@ void LivingPage::read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& o
 
 /// Whether a triangle of a star of this error lives, by its death as it is stored.
 bool LivingPage::lives(std::uint32_t death, std::uint32_t error) const noexcept {
-  // 0 lives on, 1 dies at error 0; else it dies death - kFirstAboveBase below the error.
+  // A death of 0 lives on, 1 dies at error 0; any other lies death - kFirstAboveBase below the
+  // error. Sums stand on both sides: a damaged death may exceed the error, and a difference would
+  // wrap.
   return level_ < 0 ? death == 0
                     : death < kFirstAboveBase ||
                           error + kFirstAboveBase <= death + static_cast<std::uint32_t>(level_);
@@ -219,6 +227,7 @@ bool LivingPage::lives(std::uint32_t death, std::uint32_t error) const noexcept 
 /// Whether a triangle that lives dies at the level's own error, which tells it from others with
 /// `with_ties` alone.
 bool LivingPage::is_tie(std::uint32_t death, std::uint32_t error) const noexcept {
+  // Below level 0 only a death of 0 lives, which is no tie; the 0 keeps the cast from wrapping.
   return death == 1 ? level_ == 0
                     : death > 1 && error + kFirstAboveBase ==
                                        death + static_cast<std::uint32_t>(std::max(level_, 0));
@@ -228,19 +237,22 @@ bool LivingPage::is_tie(std::uint32_t death, std::uint32_t error) const noexcept
 /// sound.
 std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
                                       Shapes& shapes) const noexcept {
-  if (level_ >= 0) {  // else deaths tell alone
+  // Below level 0 only what lives on lives, and lives() then looks at no error.
+  if (level_ >= 0) {
     run.take_some(PageColumn::kError, wanted);
   }
   const std::size_t rings_end = page_.columns().rings_end();
   std::uint64_t result = 0;
   for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
     const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    // An unsound record stays in the result, so that take() reports it.
     if (!shapes.is_sound(k, rings_end)) {
       result |= std::uint64_t{1} << k;
       continue;
     }
     const auto width = static_cast<unsigned>(shapes.death_bits[k]);
-    if (width == 0) {  // all live on
+    // Deaths of no width are all 0, so every triangle lives on.
+    if (width == 0) {
       shapes.living[k] =
           shapes.degree[k] < 64 ? (std::uint64_t{1} << shapes.degree[k]) - 1 : ~std::uint64_t{0};
       result |= std::uint64_t{1} << k;
@@ -250,10 +262,12 @@ std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
     const std::uint64_t step = shapes.corner_bits(k);
     std::size_t bit = shapes.bit[k] + 2 * shapes.offset_bits[k] + shapes.height_bits[k];
     std::uint64_t living = 0;
-    // Of an open ring the last corner has no triangle: take_star() knows.
+    // The last corner of an open ring has death 0 but no triangle; take_any() leaves it out.
     for (std::uint64_t i = 0; i < shapes.degree[k]; ++i, bit += step) {
       const bool is_one =
           lives(static_cast<std::uint32_t>(read_bits(page_.bytes(), bit, width)), error);
+      // Bits of a ring of more than 64 corners wrap around: they only say whether any triangle
+      // lives, and take_any() reads its deaths again.
       living |= std::uint64_t{is_one} << (i % 64);
     }
     shapes.living[k] = living;
@@ -279,7 +293,8 @@ bool LivingPage::read_star(const PageRun& run, std::uint32_t k, Star& out) const
   out.high = static_cast<std::int64_t>(heights.high);
   out.is_closed = (flags & (kPageNoLeft | kPageNoRight)) == 0;
   out.star.has_height = (flags & kPageVertexVoid) == 0;
-  // The descriptor's boxes lie on the grid, and its heights are none but heights.
+  // The descriptor was checked: what lies within its boxes is on the grid, and what lies within its
+  // intervals is a height, no NaN.
   if (x < d.star_min_x || y < d.star_min_y || x > d.star_max_x || y > d.star_max_y ||
       (has_heights && (out.low < low_ || out.high > high_)) ||
       (out.star.has_height &&
@@ -296,11 +311,13 @@ bool LivingPage::read_star(const PageRun& run, std::uint32_t k, Star& out) const
   out.star.height_hi = has_heights ? bits(out.high) : no_heights_.hi;
   out.star.is_tied = filter_.with_ties && static_cast<std::int64_t>(out.error) == level_;
   out.star.ends_at_w = (flags & kPageNoLeft) != 0;
+  // The rank decides among records of one error alone: only tied stars need theirs.
   out.star.rank =
       out.star.is_tied ? static_cast<std::uint16_t>(at(PageColumn::kRank)) : std::uint16_t{0};
   out.star.deviation = short_value(static_cast<ShortBits>(deviation));
   out.low = std::max(out.low, star_low_);
-  out.high = has_heights ? std::min(out.high, star_high_) : -1;  // no corner has one
+  // Ordered heights are never negative, so -1 refuses each corner that has a height all the same.
+  out.high = has_heights ? std::min(out.high, star_high_) : -1;
   return true;
 }
 
@@ -315,6 +332,7 @@ bool LivingPage::take_star(const Shapes& shapes, const Star& star, std::uint32_t
 /// Whether a star is as nearly all are: nothing is void around it, a load gets a corner, and where no
 /// triangle is tied.
 bool LivingPage::is_plain(const Shapes& shapes, const Star& star, std::uint32_t k) const noexcept {
+  // A degree of 64 is one too many: take_plain() marks the corner behind the last one by a bit too.
   return !filter_.with_ties && shapes.degree[k] < 64 && shapes.corner_bits(k) <= kMostFieldBits &&
          shapes.common_bits == 0 && star.is_closed && star.star.has_height;
 }
@@ -332,7 +350,9 @@ bool LivingPage::take_plain(const Shapes& shapes, const Star& star, std::uint32_
   const std::size_t begin = out.corners.size();
   out.corners.grow(begin + shapes.degree[k] + 1);
   LivingCorner* to = out.corners.data() + begin;
-  std::int64_t outside = 0;  // negative as soon as a corner is
+  // The sign of a difference says whether a corner is out of bounds. Differences are joined by `|`,
+  // so the loop has no branch for them, and one test at the end judges the star.
+  std::int64_t outside = 0;
   const auto take = [&](unsigned i) {
     const std::uint64_t word = read_bits(page_.bytes(), shapes.bit[k] + i * step, kMostFieldBits);
     const std::int64_t x = star.star.u.x + with_sign(word & offset_mask, offset_bits);
@@ -346,12 +366,14 @@ bool LivingPage::take_plain(const Shapes& shapes, const Star& star, std::uint32_
              height_of_ordered(static_cast<std::uint32_t>(height), type_),
              static_cast<std::uint8_t>((living >> i & 1) * LivingCorner::kLives)};
   };
+  // Corner i is wanted as the beginning of triangle i, or as the end of triangle i - 1.
   const std::uint64_t ends = living << 1;
   const std::uint64_t around = std::uint64_t{1} << shapes.degree[k];
   for (std::uint64_t left = (living | ends) & ~around; left != 0; left &= left - 1) {
     take(static_cast<unsigned>(std::countr_zero(left)));
   }
   if ((ends & around) != 0) {
+    // The first corner comes once more, as the end of the last triangle, and begins none there.
     take(0);
     to[-1].flags = 0;
   }
@@ -431,6 +453,7 @@ bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) cons
     return true;
   }
   bool is_sound = true;
+  // A tied star stays even if no triangle of it meets the box: its fan says which others are gone.
   bool any = star.star.is_tied;
   LivingCorner* const end = out.corners.data() + out.corners.size();
   for (LivingCorner* c = out.corners.data() + begin; c < end; ++c) {
@@ -439,6 +462,7 @@ bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) cons
     }
     const bool has_heights =
         star.star.has_height && ((c[0].flags | c[1].flags) & LivingCorner::kNoHeight) == 0;
+    // All corners lie within the descriptor's box, thus on the grid, as turn() requires.
     is_sound &= (turn(star.star.u, c[0].position, c[1].position) > 0) &
                 (has_heights || (c->flags & LivingCorner::kVoid) != 0);
     const bool is_met =

@@ -40,7 +40,7 @@ struct LivingFilter : StarFilter {
 /// safe. What else a whole ring must be is not looked at (is_star()).
 ///
 /// With `with_ties` the triangles come too that die at the level's own error, and the stars of the
-/// records of that error, whole: LivingTies tells which of them are gone.
+/// records of that error, whole: LivingTies decides which of them are gone.
 /// @throws Error corruption  a number cannot be what was written, or the descriptor excludes it;
 ///                           `out` is as before
 void take_living(const RecordPage& page, const LivingFilter& filter, LivingStars& out);

@@ -16,11 +16,11 @@ namespace ptin {
 /// A star of which some triangle lives, or one that is tied.
 struct LivingStar {
   GridPoint u;
-  HeightBits height = 0;                    ///< Of u; 0 where it has none.
+  HeightBits height = 0;                    ///< Height of u; 0 where it has none.
   HeightBits height_lo = 0, height_hi = 0;  ///< As VertexSplit has them.
   float deviation = 0.0F;                   ///< As VertexSplit has it.
   std::uint16_t rank = 0;                   ///< As VertexSplit has it; of a tied star.
-  bool has_height = false;                  ///< Of u.
+  bool has_height = false;                  ///< Whether u has a height.
   /// Its record has the level's own error, and its corners are the whole ring, which ends at w where
   /// `ends_at_w`, else begins there (storage/star.h). Where the last triangle lives, the first corner
   /// comes once more.

@@ -23,7 +23,7 @@ inline void set_level(const Detail& detail, StarFilter& filter) noexcept {
 /// triangle is gone exactly when it stands in the fan of a record of error E that the level keeps,
 /// which the star of that record tells. The star's box holds the triangle, and its heights those of
 /// the triangle: so a search that has read all that may hold the triangle has read the star.
-/// Of a level of error nothing is set aside. Threads: one owner.
+/// A level of error sets nothing aside. Threads: one owner.
 class LivingTies {
  public:
   /// @param detail  Borrowed.

@@ -33,7 +33,7 @@ PredicatePtr crossed(const TileTraceRequest& asked, const std::optional<Region>&
 TileTraces trace(const OpenedTerrain& terrain, const TileTraceRequest& asked,
                  const AttributePredicate& predicate, PointStore& points, QueryCost& cost) {
   const StoreFacts& facts = terrain.store().facts();
-  QueryContext context({asked.memory_bytes, asked.stop}, terrain.store().path());
+  QueryContext context({asked.tiles.memory_bytes, asked.stop}, terrain.store().path());
   SelectiveRefinement mesh(terrain, asked.detail);
   mesh.refine(predicate, context);
   mesh.release_records();
@@ -42,7 +42,7 @@ TileTraces trace(const OpenedTerrain& terrain, const TileTraceRequest& asked,
                context.left_beside(mesh.bytes()));
   for (TriangleId t = 0; t < mesh.tin().triangles.size(); ++t) {
     if (!tracer.add(mesh.tin(), t)) {  // there is no room, or more points than 32 bits number
-      context.admit(std::max(mesh.bytes() + tracer.bytes_wanted(), asked.memory_bytes + 1));
+      context.admit(std::max(mesh.bytes() + tracer.bytes_wanted(), asked.tiles.memory_bytes + 1));
     }
   }
   TraceCollector collector(asked, points, terrain.store().path());

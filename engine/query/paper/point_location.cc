@@ -6,6 +6,7 @@
 #include "engine/query/heights/locate_in_groups.h"
 #include "engine/query/heights/located_point.h"
 #include "engine/query/paper/selective_refinement.h"
+#include "engine/query/shape/tiler.h"
 #include "engine/query/walk/spot_set.h"
 #include "engine/query/walk/walk.h"
 
@@ -36,8 +37,8 @@ void walk(const PointGroup& group, const SelectiveRefinement& mesh, const StoreF
   }
 }
 
-/// A group whose records might not fit, or are very many, is halved.
-void locate_group(const OpenedTerrain& terrain, const PointGroup& group) {
+/// Answers the points of a group, unless their records might not fit or are very many.
+bool locate_group(const OpenedTerrain& terrain, const PointGroup& group) {
   std::vector<Spot> spots;
   for (const PointOnCurve& p : group.points) {
     spots.push_back(p.spot);
@@ -46,24 +47,25 @@ void locate_group(const OpenedTerrain& terrain, const PointGroup& group) {
   SelectiveRefinement mesh(terrain, group.detail);
   const std::vector<PageId> pages = mesh.search(holds_a_point, group.context);
   const std::uint64_t bytes = group.bytes_held() + mesh.bytes_with(pages);
-  const std::size_t half = group.points.size() / 2;
-  if (half > 0 &&
+  if (group.points.size() > 1 &&
       (most_records(terrain.store(), pages) > kMostRecords || !group.context.fits(bytes))) {
-    locate_group(terrain, {group.points.first(half), group.answers, group.detail, group.context});
-    locate_group(terrain, {group.points.subspan(half), group.answers, group.detail, group.context});
-    return;
+    return false;
   }
   group.context.admit(bytes);
   mesh.refine(pages, holds_a_point, group.context);
   walk(group, mesh, terrain.store().facts());
+  return true;
 }
 
 }  // namespace
 
 LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                     const LocateRequest& request) {
-  return locate_in_groups(terrain, points, request,
-                          [&](const PointGroup& group) { locate_group(terrain, group); });
+  return locate_in_groups(terrain, points, request, [&](const PointGroup& group) {
+    work_in_parts(group.points, [&](std::span<const PointOnCurve> some) {
+      return locate_group(terrain, {some, group.answers, group.detail, group.context});
+    });
+  });
 }
 
 }  // namespace ptin::paper

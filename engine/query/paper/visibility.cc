@@ -91,8 +91,8 @@ class NeededAlongLine final : public AttributePredicate {
 };
 
 /// The three steps of section 5.3: walk over the triangles below the line; compare the line with
-/// minh(t) and maxh(t) of each (SightLine::decide_by_bounds()); refine those of which that does not
-/// tell whether they occlude q, the ones close to the critical values first; begin again.
+/// minh(t) and maxh(t) of each (SightLine::decide_by_bounds()); refine those for which that leaves
+/// open whether they occlude q, the ones close to the critical values first; begin again.
 class VisibilityQuery final : public SightSearch {
  public:
   VisibilityQuery(const OpenedTerrain& terrain, const SightFacts& facts,
@@ -245,7 +245,7 @@ std::vector<Stretch> VisibilityQuery::undecided_stretches() const {
 }
 
 /// The one point that hides the line unless it is a void, which only records beyond the level of
-/// detail tell; empty when there is none.
+/// detail decide; empty when there is none.
 std::vector<Stretch> VisibilityQuery::unsettled_stretch() const {
   const SightPiece* likely = lowest_piece([this](const SightPiece& p) {
     return facts_.has_voids && !p.exact && p.guess < -p.deviation;

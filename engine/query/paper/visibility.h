@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Visibility queries (paper, section 5.3): T0 is walked from p to q, and refined along the line only
-// where the triangles do not tell yet whether they occlude q.
+// where the triangles leave open whether they occlude q.
 #pragma once
 
 #include "engine/query/sight/sight.h"

@@ -116,7 +116,7 @@ class Refinement {
   bool has_void_vertex_ = false;  ///< A vertex without a height is, or was, there.
   bool track_pages_;
   std::vector<std::uint32_t> vertex_pages_,
-      triangle_pages_;  ///< Beside the mesh's arrays, when tracked.
+      triangle_pages_;  ///< The page behind each vertex and triangle, when tracked.
 };
 
 }  // namespace ptin

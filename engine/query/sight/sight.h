@@ -57,16 +57,16 @@ enum class SightVerdict : std::uint8_t { kVisible, kHidden, kUndecided, kUndefin
 /// A point of the line.
 struct SightPoint {
   MapPoint position;      ///< Map units.
-  double share = 0.0;     ///< Of the way from a to b.
+  double share = 0.0;     ///< Share of the way from a to b.
   double distance = 0.0;  ///< From a over ground, height's unit.
-  double height = 0.0;    ///< Of the line there, height's unit.
+  double height = 0.0;    ///< Height of the line there, height's unit.
 };
 
 struct SightResult {
   SightVerdict verdict = SightVerdict::kUndecided;
   /// What the ends stand on. Exact, unless the budget ended before they were known.
   PointState state_a = PointState::kOutside, state_b = PointState::kOutside;
-  double length = 0.0;  ///< Of the line over ground, height's unit.
+  double length = 0.0;  ///< Length of the line over ground, height's unit.
   /// Set when hidden: where the line first goes below ground. With `verdict_only`, or when not
   /// exact, some point where it is below ground.
   std::optional<SightPoint> obstruction;
@@ -87,7 +87,7 @@ struct SightResult {
   /// Most that the surface may deviate where the line is undecided; 0 when it is decided, infinite
   /// where the budget left the line unread.
   double certified_deviation = 0.0;
-  bool exact = false;  ///< All that the result tells holds of the source.
+  bool exact = false;  ///< All that the result says holds of the source.
   QueryCost cost;
 };
 
@@ -107,7 +107,7 @@ struct SightWay {
 
 /// Answers pairs one after the other. It keeps a coarse level of the whole terrain in memory: where
 /// no full surface can lie so low that the line passes above it, a verdict reads nothing, and
-/// elsewhere the level tells where to look first.
+/// elsewhere the level says where to look first.
 ///
 /// The path is straight in the file's CRS, and distances are proportional along it. (In a
 /// geographic CRS that is true to a thousandth at 100 km and middle latitudes.) Threads: one owner;

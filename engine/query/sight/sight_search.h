@@ -29,8 +29,8 @@ class SightSearch {
   /// REQUIRES: finish_line() came before, unless the verdict alone is asked for.
   [[nodiscard]] virtual SightVerdict decide() = 0;
 
-  /// True when all that is asked of the ends is known. Of absolute ends only the states are asked,
-  /// and only voids can change a state.
+  /// True when all that is asked of the ends is known. Absolute ends are asked for their states
+  /// alone, and only voids can change a state.
   [[nodiscard]] bool ends_known() const noexcept {
     return (line().a.known && line().b.known) || (request_.absolute && !facts_.has_voids);
   }

@@ -85,16 +85,16 @@ class SightStars final : public SightSearch, private BestStarVisitor {
   SightLine line_;
   MapPoint origin_, way_;  ///< The line's beginning, and from there to its end, grid units.
   Detail full_detail_;
-  LevelStars asked_, full_;  ///< Of the level of detail, and of the full TIN.
-  // Of the search at hand.
+  LevelStars asked_, full_;  ///< Stars of the level of detail, and of the full TIN.
+  // The search at hand.
   LevelStars* stars_ = &asked_;
   Aim aim_ = Aim::kVerdict;
-  Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
-  LivingFilter filter_;  ///< Of the page at hand.
+  Part part_{0.0, 1.0};  ///< Part of the way; nothing else is looked at.
+  LivingFilter filter_;  ///< What is wanted of the page at hand.
   double lowest_ = 0.0;  ///< What ends below this height on the page does not matter.
   bool is_cut_ = false;  ///< The budget ended the search.
   double cut_bound_ = 0.0;
-  // Of all searches.
+  // What all searches have found.
   double most_ = kInfinity;           ///< The smallest clearance is no more.
   double first_hidden_ = 2.0;         ///< Share of the way at which a hidden piece begins; 2: none.
   std::optional<double> open_touch_;  ///< Where the line has one point, which may be a void or not.

@@ -25,7 +25,7 @@ using Point = std::array<double, 3>;
 std::vector<Point> read_here(const std::string& path) {
   XyzReader reader(path);
   std::vector<Point> points;
-  for (XyzPoint p; reader.next(p);) {
+  for (SourcePoint p; reader.next(p);) {
     points.push_back({to_double(p.x), to_double(p.y), to_double(p.z)});
   }
   return points;

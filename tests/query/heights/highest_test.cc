@@ -14,7 +14,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/locate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"

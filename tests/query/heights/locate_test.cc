@@ -13,7 +13,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot_set.h"
 #include "engine/query/walk/walk.h"
 #include "tests/query/built_terrain.h"

@@ -13,7 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/isoline/isoline_listing.h"
 #include "tests/query/polygon_oracle.h"

@@ -14,7 +14,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/query/living/living_page.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/packed_rtree.h"
 #include "storage/short_float.h"
 #include "tests/query/built_terrain.h"

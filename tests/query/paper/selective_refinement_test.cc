@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/questions.h"
 #include "engine/query/select/predicate.h"
-#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"
 

@@ -2,7 +2,7 @@
 import type { IncomingMessage, ServerResponse } from 'node:http';
 
 export interface HostOptions {
-  bytesPerSecond?: number;
+  portions?: number;
   answer?: (request: IncomingMessage, response: ServerResponse, path: string) => boolean;
 }
-export function host(folder: string, options?: HostOptions): Promise<{ url: string; close(): Promise<void> }>;
+export function host(folder: string, options?: HostOptions): Promise<{ url: string; more(): void; close(): Promise<void> }>;

@@ -3,6 +3,7 @@
 // Spots: positions between grid points, in fixed point. Every decision about a spot is exact.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -19,7 +20,7 @@ inline constexpr int kSpotBits = 22;
 /// Largest coordinate of a spot, in its units: 2^31 grid units, twice the side of the largest grid.
 inline constexpr std::int64_t kSpotMax = std::int64_t{1} << (31 + kSpotBits);
 
-/// A position in the plane: -kSpotMax <= x, y <= kSpotMax.
+/// A position in the plane. SpotMap::spot() gives ones of at most kSpotMax along x and y.
 struct Spot {
   std::int64_t x = 0;
   std::int64_t y = 0;
@@ -63,11 +64,25 @@ struct Spot {
   return side(a, b, q) >= 0 && side(b, c, q) >= 0 && side(c, a, q) >= 0;
 }
 
-/// Twice the signed area of (p, q, v), in units of 2^-44: > 0 where v lies to the left of p -> q.
-/// Exact: differences of at most 2^54, products of 2^108.
-[[nodiscard]] constexpr Int128 side(Spot p, Spot q, GridPoint v) noexcept {
-  const Spot to = spot_of(v);
-  return Int128{q.x - p.x} * (to.y - p.y) - Int128{q.y - p.y} * (to.x - p.x);
+/// The shares of a and b in a spot of the segment between them, as whole numbers: its distances from
+/// b and from a along the axis along which they are farther apart. Areas give the same shares from
+/// both sides of an edge, but in numbers so large that doubles round them differently.
+[[nodiscard]] constexpr std::array<Int128, 2> edge_weights(GridPoint a, GridPoint b,
+                                                           Spot q) noexcept {
+  const Spot from = spot_of(a);
+  const Spot to = spot_of(b);
+  const auto apart = [](std::int64_t v, std::int64_t w) { return v < w ? w - v : v - w; };
+  if (apart(from.x, to.x) >= apart(from.y, to.y)) return {apart(q.x, to.x), apart(q.x, from.x)};
+  return {apart(q.y, to.y), apart(q.y, from.y)};
+}
+
+/// Twice the signed area of (a, b, c), in units of 2^-44: > 0 where c lies to the left of a -> b.
+/// Exact for coordinates up to 2^60: differences below 2^61, products below 2^122.
+[[nodiscard]] constexpr Int128 side(Spot a, Spot b, Spot c) noexcept {
+  return Int128{b.x - a.x} * (c.y - a.y) - Int128{b.y - a.y} * (c.x - a.x);
+}
+[[nodiscard]] constexpr Int128 side(Spot a, Spot b, GridPoint c) noexcept {
+  return side(a, b, spot_of(c));
 }
 
 /// True unless all corners of the box (grid units) lie strictly on one side of the line through p
@@ -100,6 +115,8 @@ class SpotMap {
   /// the grid's origin, where no terrain is.
   /// @throws Error invalid_argument when a coordinate is not finite
   [[nodiscard]] std::optional<Spot> spot(MapPoint p) const;
+  /// The spot nearest to a position in grid units. REQUIRES: coordinates of at most 2^38.
+  [[nodiscard]] Spot rounded(MapPoint grid) const noexcept;
   [[nodiscard]] MapPoint map(Spot s) const noexcept {
     const MapPoint g = grid_of(s);
     return map_.to_map(g.x, g.y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,13 @@ std::optional<Spot> SpotMap::spot(MapPoint p) const {
   if (!(std::abs(grid.x) <= kFarthest && std::abs(grid.y) <= kFarthest)) {
     return std::nullopt;
   }
+  return rounded(grid);
+}
+
+Spot SpotMap::rounded(MapPoint grid) const noexcept {
   const double scale = std::ldexp(1.0, bits_);
   const std::int64_t unit = std::int64_t{1} << (kSpotBits - bits_);
-  return Spot{std::llrint(grid.x * scale) * unit, std::llrint(grid.y * scale) * unit};
+  return {std::llrint(grid.x * scale) * unit, std::llrint(grid.y * scale) * unit};
 }
 
 }  // namespace ptin
