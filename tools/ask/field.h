@@ -199,9 +199,11 @@ class Fields : public std::vector<Field<Row>> {
 template <typename Row>
 void put(Json& object, const Fields<Row>& fields, const Row& row) {
   for (const Field<Row>& field : fields) {
-    if (Json value = field.value(row); !value.is_discarded()) {
-      member_of(object, field.facts.name) = std::move(value);
-    }
+    Json value = field.value(row);
+    if (value.is_discarded()) continue;
+    Json& member = member_of(object, field.facts.name);
+    // An object whose members are fields of their own may have some already.
+    if (!value.is_object() || !value.empty() || !member.is_object()) member = std::move(value);
   }
 }
 template <typename Row>

@@ -168,7 +168,7 @@ Fields<SightRow> sight_fields() {
                 &SightResult::clearance_min);
   add_clearance(fields, "clearance.max", "The exact clearance is no more; null: without limit.",
                 &SightResult::clearance_max);
-  add_place(fields, "clearance", &Row::clearance, {"distance", "height"});
+  add_place(fields, "clearance", &Row::clearance, {"distance"});
   fields.add("void_length", "number or null", kHeightUnit,
              "Of the line over voids; null where it is not known.",
              [](const Row& r) { return r.result.void_length; });

@@ -35,7 +35,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build survey.txt -o survey.ptin --columns id n e z code\n"
      "  ptin build scan_*.las --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
-     nullptr},
+     declare_build},
     {"build-part", "Do one job of a build that was divided by `ptin build --parts`",
      "The phases follow each other: collapse (each part), join, tighten (each part), publish. A "
      "job\n"
