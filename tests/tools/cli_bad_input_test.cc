@@ -394,7 +394,7 @@ TEST(CliBadInput, OptionsThatMeanNothingToARaster) {
   expect_no_build(folder, raster, 2, "--resolution is for points", {"--resolution", "2"});
   expect_no_build(folder, raster, 2, "--class is for LAS", {"--class", "2"});
   expect_no_build(folder, raster, 2, "--repair is for TINs", {"--repair"});
-  expect_no_build(folder, raster, 2, "--progress-fd: must be a finite number >= 0; -1 is none; see",
+  expect_no_build(folder, raster, 2, "--progress-fd: must be a whole number >= 0; -1 is none; see",
                   {"--progress-fd", "-1"});
 }
 

@@ -100,7 +100,7 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
   rows.add("dry-run", &command.dry_run, "", "Say what the build would need, and stop");
   rows.add("progress-fd", &command.progress_fd, "FD",
            "Write progress as lines of JSON to this file descriptor")
-      .within({.least = 0, .most = 1 << 20});
+      .within(ask::kNotNegative);
   rows.add("parts", &command.parts, "N",
            "Read the source and divide the rest into this many jobs of a batch system, which\n"
            "`ptin build-part` does")
