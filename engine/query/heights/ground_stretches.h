@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/living/living_place.h"
+#include "engine/query/living/living_visitor.h"
 #include "engine/query/walk/spot_path.h"
 
 namespace ptin {

@@ -16,6 +16,7 @@
 #include "engine/query/heights/ground_stretches.h"
 #include "engine/query/heights/profile_points.h"
 #include "engine/query/heights/stations.h"
+#include "engine/query/living/living_place.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/shape/tiler.h"
 #include "engine/query/walk/spot_path.h"

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/query/living/level_stars.h"
+#include "engine/query/living/living_visitor.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -28,25 +29,6 @@ struct LivingPlace {
   std::span<const std::uint64_t> steps;
   /// A further condition of a triangle; none: all are wanted.
   std::function<bool(const LivingTriangle&)> wanted;
-};
-
-/// Takes the triangles of a place.
-class LivingVisitor {
- public:
-  LivingVisitor() = default;
-  LivingVisitor(const LivingVisitor&) = delete;
-  LivingVisitor& operator=(const LivingVisitor&) = delete;
-  virtual ~LivingVisitor() = default;
-  /// Called once, before a page is read: about so many records are on the pages that will be. False
-  /// ends it.
-  virtual bool expect(std::uint64_t /*records*/) { return true; }
-  /// Called before the triangles of T0, and of each page: at most so many come, and those that the
-  /// level has not decided yet. False ends it.
-  virtual bool begin(std::size_t /*most_triangles*/) { return true; }
-  /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles
-  /// nothing more is asked yet. True: it took them; false: the triangles come one by one.
-  virtual bool take_stars(const LivingStars& /*stars*/) { return false; }
-  virtual void take(const LivingTriangle& t) = 0;
 };
 
 /// Reads places of the TIN of one level of detail, one after the other. Threads: one owner.

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -99,10 +100,10 @@ void run_on_threads(int count, const Work& work) {
 std::array<GridBox, 2> divided(const GridBox& box) noexcept {
   std::array<GridBox, 2> halves{box, box};
   if (std::int64_t{box.max_x} - box.min_x >= std::int64_t{box.max_y} - box.min_y) {
-    halves[0].max_x = box.min_x + (box.max_x - box.min_x) / 2;
+    halves[0].max_x = std::midpoint(box.min_x, box.max_x);  // a side may be longer than an int32
     halves[1].min_x = halves[0].max_x + 1;
   } else {
-    halves[0].max_y = box.min_y + (box.max_y - box.min_y) / 2;
+    halves[0].max_y = std::midpoint(box.min_y, box.max_y);
     halves[1].min_y = halves[0].max_y + 1;
   }
   return halves;

@@ -156,7 +156,9 @@ class Session {
       try {
         more = this.still.apply(40);
       } catch (error) {
+        // What came whole before the damage is shown, though the damage was met before anything was.
         this.failed = true;
+        this.introduce(nameOf(this.source));
         this.draw(true);
         tell(error, true);
         return;
