@@ -56,11 +56,11 @@ Fields<QueryCost> cost_fields() {
 
 }  // namespace
 
-Json cost_json(const QueryCost& cost) { return object_of(cost_fields(), cost); }
+Json cost_json(const QueryCost& cost) { return cost_fields().object_of(cost); }
 
-Json units_json(const CrsFacts& crs) { return object_of(unit_fields(), crs); }
+Json units_json(const CrsFacts& crs) { return unit_fields().object_of(crs); }
 
-Fields<AnswerFacts> answer_fields() {
+Fields<AnswerFacts> certificate_fields() {
   Fields<AnswerFacts> fields;
   fields.add("certified_error", "number or null", kHeightUnit,
              "How far the answer is off at an input sample, at most.",
@@ -73,12 +73,17 @@ Fields<AnswerFacts> answer_fields() {
              "way: `certified_error` over `--void-slope`. 0 for a terrain without voids; null "
              "where nothing bounds it (a slope of 0).",
              &AnswerFacts::border_moved_at_most);
+  return fields;
+}
+
+Fields<AnswerFacts> answer_fields() {
+  Fields<AnswerFacts> fields = certificate_fields();
   fields.add("exact", "boolean", "",
              "Nothing was left out, and the file's finest TIN is its source.", &AnswerFacts::exact);
-  fields.add(
-      "unit", "string", "", "The height's unit; `unknown` where nobody knows.",
-      [](const AnswerFacts& a) { return a.crs->vertical_unit; }, Door::kService);
-  const std::size_t first_of_program = fields.size();
+  fields.add("unit", "string", "", "The height's unit; `unknown` where nobody knows.",
+             Told::kService, [](const AnswerFacts& a) { return a.crs->vertical_unit; });
+  // The service tells units once, and costs in a header.
+  fields.next = Told::kProgram;
   fields.add("transformed", "object or null", "",
              "What was done to lines or a polygon of another CRS; null where nothing was.",
              [](const AnswerFacts& a) {
@@ -91,8 +96,6 @@ Fields<AnswerFacts> answer_fields() {
   fields.add_object("units", "object", "The names of the units; `unknown` where nobody knows.",
                     unit_fields(), &AnswerFacts::crs);
   fields.add_object("cost", "object", "What the question took.", cost_fields(), &AnswerFacts::cost);
-  // The service tells units once, and costs in a header.
-  fields.tell_at(Door::kProgram, first_of_program);
   return fields;
 }
 

@@ -43,7 +43,8 @@ template <typename Result>
           &result.cost};
 }
 
-/// The fields of all answers.
+/// How far a TIN can be off; the fields of all answers, which begin so.
+[[nodiscard]] Fields<AnswerFacts> certificate_fields();
 [[nodiscard]] Fields<AnswerFacts> answer_fields();
 /// The cost of an answer, and the names of a terrain's units, by themselves.
 [[nodiscard]] Json cost_json(const QueryCost& cost);

@@ -4,10 +4,8 @@
 // value is found. JSON, CSV, layers, GeoJSON, OpenAPI and the lists of tools/API.md read rows.
 #pragma once
 
-#include <algorithm>
 #include <functional>
-#include <initializer_list>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -15,48 +13,45 @@
 #include <vector>
 
 #include "tools/ask/long_text.h"
-#include "tools/ask/parameter.h"
 #include "tools/formats/vector_file.h"
 
 namespace ptin::ask {
 
-/// What is made of a row: an object of JSON, a row of a table, a feature of a layer, whose geometry
-/// has the position.
-enum class As : std::uint8_t {
-  kList = 0,  ///< None of these: documents alone tell it.
-  kObject = 1,
-  kTableRow = 2,
-  kFeature = 4,
-  kNoFeature = 3,
-  kNoObject = 6,
-  kAll = 7,
+/// Where a field is told: on the command line or over HTTP; in an object of JSON, in a row of a table,
+/// in a feature of a layer, whose geometry has the position.
+enum class Told : std::uint8_t {
+  kProgram = 0x0f,
+  kService = 0xf0,
+  kObject = 0x11,
+  kTableRow = 0x22,
+  kFeature = 0x44,
+  kNoObject = 0x66,
+  kNoTableRow = 0x55,
+  kNoFeature = 0x33,
+  kAll = 0x77,
+  kList = 0x88,      ///< Documents alone tell it: a field of the objects of an array.
+  kDocument = 0x99,  ///< What documents tell of objects.
 };
+[[nodiscard]] constexpr Told operator&(Told a, Told b) noexcept {
+  return static_cast<Told>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
+}
+[[nodiscard]] constexpr Told operator|(Told a, Told b) noexcept {
+  return static_cast<Told>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
 
 inline constexpr std::string_view kMapUnit = "map unit", kHeightUnit = "height's unit";
 
-/// Where a field is told.
-struct Told {
-  Told() = default;
-  Told(Door at) : doors(at) {}  // NOLINT(google-explicit-constructor): `add(..., Door::kProgram)`
-  Told(As in) : as(in) {}       // NOLINT(google-explicit-constructor)
-  Told(Door at, As in) : doors(at), as(in) {}
-
-  Door doors = Door::kBoth;
-  As as = As::kAll;  ///< It is part of these.
-};
-
-struct FieldFacts {
+struct Field {
   std::string name;  ///< `a.b` is `b` of the object `a`, `a[].b` that of each object of an array.
   std::string_view type;  ///< As documents say it: "number or null", "array of objects".
   std::string_view unit;  ///< Empty: none.
   std::string_view meaning;
-  std::string heading;  ///< The name in a table or a layer: of `a.b` a_b.
-  Told told{};
+  Told told = Told::kAll;
+  /// Finds the value in a row of the answer; a value that is discarded is left out.
+  std::function<Json(const void* row)> value{};
 
-  [[nodiscard]] bool is_told(Door door, As as) const noexcept {
-    return is_at(told.doors, door) &&
-           (static_cast<unsigned>(told.as) & static_cast<unsigned>(as)) != 0;
-  }
+  /// The name in a table or a layer: of `a.b` a_b.
+  [[nodiscard]] std::string heading() const;
 };
 
 inline const Json kLeftOut = Json::value_t::discarded;
@@ -73,45 +68,44 @@ template <typename Value>
   }
 }
 
-/// The field of a Row; a value that is discarded is left out.
-template <typename Row>
-struct Field {
-  FieldFacts facts;
-  std::function<Json(const Row& row)> value;
-};
+/// Adds values of fields to an object of JSON.
+void put(Json& object, std::span<const Field> fields, std::vector<Json> values);
 
 /// The fields of a Row, in the order of tables.
 template <typename Row>
-class Fields : public std::vector<Field<Row>> {
+class Fields : public std::vector<Field> {
  public:
+  /// Where the fields are told that are added from now on, beside what each says of itself.
+  Told next = Told::kAll | Told::kList;
+
   /// Adds a field.
   /// @param value  A member of the row, or what finds the value in it.
   template <typename Value>
-  Field<Row>& add(std::string name, std::string_view type, std::string_view unit,
-                  std::string_view meaning, Value value, Told told = {}) {
-    std::string heading = name;
-    std::replace(heading.begin(), heading.end(), '.', '_');
-    return this->emplace_back(
-        Field<Row>{{std::move(name), type, unit, meaning, std::move(heading), told},
-                   [value](const Row& row) { return json_of(std::invoke(value, row)); }});
+  void add(std::string name, std::string_view type, std::string_view unit, std::string_view meaning,
+           Told told, Value value) {
+    push_back({std::move(name), type, unit, meaning, told & next, [value](const void* row) {
+                 return json_of(std::invoke(value, *static_cast<const Row*>(row)));
+               }});
   }
-
+  template <typename Value>
+  void add(std::string name, std::string_view type, std::string_view unit, std::string_view meaning,
+           Value value) {
+    add(std::move(name), type, unit, meaning, Told::kAll, std::move(value));
+  }
   /// Adds the fields of a part of the row.
   /// @param prefix  Of their names: "obstruction."
   /// @param part    A member of the row, or what finds a pointer to the part: null where the row has
   ///                none, and its fields are left out.
   template <typename Part, typename Find>
   void add_parts(const std::string& prefix, const Fields<Part>& parts, Find part) {
-    std::string heading = prefix;
-    std::replace(heading.begin(), heading.end(), '.', '_');
-    for (const Field<Part>& field : parts) {
-      const FieldFacts& facts = field.facts;
-      const auto value = [part, value = field.value](const Row& row) {
-        const Part* const found = pointer_to(std::invoke(part, row));
-        return found == nullptr ? kLeftOut : value(*found);
+    for (Field field : parts) {
+      field.name.insert(0, prefix);
+      field.told = field.told & next;
+      field.value = [part, value = field.value](const void* row) {
+        const Part* const found = found_in(row, part);
+        return found == nullptr ? kLeftOut : value(found);
       };
-      add(prefix + facts.name, facts.type, facts.unit, facts.meaning, value, facts.told)
-          .facts.heading = heading + facts.heading;
+      push_back(std::move(field));
     }
   }
   /// Adds an object of JSON with these fields.
@@ -119,13 +113,10 @@ class Fields : public std::vector<Field<Row>> {
   template <typename Part, typename Find>
   void add_object(const std::string& name, std::string_view type, std::string_view meaning,
                   const Fields<Part>& parts, Find part) {
-    add(
-        name, type, "", meaning,
-        [part, type](const Row& row) {
-          if (pointer_to(std::invoke(part, row)) != nullptr) return Json(Json::object());
-          return type == "object" ? kLeftOut : Json();
-        },
-        As::kObject);
+    add(name, type, "", meaning, Told::kObject, [part, type](const Row& row) {
+      if (found_in(&row, part) != nullptr) return Json(Json::object());
+      return type == "object" ? kLeftOut : Json();
+    });
     add_parts(name + ".", parts, part);
   }
   /// Adds an array of such objects.
@@ -134,55 +125,48 @@ class Fields : public std::vector<Field<Row>> {
   template <typename Part, typename Find>
   void add_array(const std::string& name, std::string_view meaning, const Fields<Part>& parts,
                  Find all) {
-    add(
-        name, "array of objects", "", meaning,
-        [parts, all](const Row& row) {
-          Json array = Json::array();
-          const auto* const found = pointer_to(std::invoke(all, row));
-          if (found == nullptr) return kLeftOut;
-          for (const Part& part : *found) array.push_back(object_of(parts, part));
-          return array;
-        },
-        As::kObject);
-    for (const Field<Part>& field : parts) {
-      this->push_back({field.facts, {}});
-      this->back().facts.name.insert(0, name + "[].");
-      this->back().facts.told.as = As::kList;
+    add(name, "array of objects", "", meaning, Told::kObject, [parts, all](const Row& row) {
+      const auto* const found = found_in(&row, all);
+      if (found == nullptr) return kLeftOut;
+      Json array = Json::array();
+      for (const Part& part : *found) array.push_back(parts.object_of(part));
+      return array;
+    });
+    for (const Field& field : parts) {
+      push_back(
+          {name + "[]." + field.name, field.type, field.unit, field.meaning, Told::kList & next});
     }
   }
 
-  /// Has the fields from number `first` on told at one door alone.
-  void tell_at(Door door, std::size_t first) {
-    for (std::size_t i = first; i < this->size(); ++i) (*this)[i].facts.told.doors = door;
-  }
-
-  /// Those that are told.
-  /// @param first  The headings of those that come first, where tables have had another order than
-  ///               the rows.
-  [[nodiscard]] Fields told(Door door, As as,
-                            std::initializer_list<std::string_view> first = {}) const {
-    Fields some;
-    for (const Field<Row>& field : *this) {
-      if (field.facts.is_told(door, as)) some.push_back(field);
-    }
-    const auto place = [&](const Field<Row>& field) {
-      return std::find(first.begin(), first.end(), field.facts.heading);
-    };
-    std::stable_sort(some.begin(), some.end(),
-                     [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  /// Those that are told somewhere.
+  [[nodiscard]] Fields told(Told where) const {
+    Fields some(*this);
+    std::erase_if(some, [&](const Field& f) { return (f.told & where) == Told{}; });
     return some;
   }
   /// All but one, which no row has.
   [[nodiscard]] Fields without(std::string_view name) const {
     Fields others(*this);
-    std::erase_if(others, [&](const Field<Row>& field) { return field.facts.name == name; });
+    std::erase_if(others, [&](const Field& field) { return field.name == name; });
     return others;
+  }
+  /// The values of a row.
+  [[nodiscard]] std::vector<Json> values_of(const Row& row) const {
+    std::vector<Json> values;
+    for (const Field& field : *this) values.push_back(field.value(&row));
+    return values;
+  }
+  [[nodiscard]] Json object_of(const Row& row) const {
+    Json object = Json::object();
+    put(object, *this, values_of(row));
+    return object;
   }
 
  private:
-  template <typename Part>
-  static auto* pointer_to(const Part& part) {
-    if constexpr (std::is_pointer_v<Part>) {
+  template <typename Find>
+  static auto* found_in(const void* row, const Find& find) {
+    const auto& part = std::invoke(find, *static_cast<const Row*>(row));
+    if constexpr (std::is_pointer_v<std::decay_t<decltype(part)>>) {
       return part;
     } else if constexpr (requires { part.has_value(); }) {
       return part ? &*part : nullptr;
@@ -192,91 +176,24 @@ class Fields : public std::vector<Field<Row>> {
   }
 };
 
-/// The place of `a.b` in an object.
-[[nodiscard]] Json& member_of(Json& object, std::string_view name);
-
-/// Adds fields of a row to an object of JSON.
-template <typename Row>
-void put(Json& object, const Fields<Row>& fields, const Row& row) {
-  for (const Field<Row>& field : fields) {
-    Json value = field.value(row);
-    if (value.is_discarded()) continue;
-    Json& member = member_of(object, field.facts.name);
-    // An object whose members are fields of their own may have some already.
-    if (!value.is_object() || !value.empty() || !member.is_object()) member = std::move(value);
-  }
-}
-template <typename Row>
-[[nodiscard]] Json object_of(const Fields<Row>& fields, const Row& row) {
-  Json object = Json::object();
-  put(object, fields, row);
-  return object;
-}
-
-/// Adds a value of CSV; one that is null, infinite or left out is empty.
-void add_csv_value(LongText& text, const Json& value);
+/// Adds a line of CSV: a value that is null, infinite or left out is empty.
+void add_csv_line(LongText& text, std::span<const Json> values);
 /// Adds a table with a heading.
 /// @param rows   How many there are.
 /// @param row_at Makes a row by its number.
 template <typename Row, typename RowAt>
 void add_csv(LongText& text, const Fields<Row>& fields, std::size_t rows, const RowAt& row_at) {
-  const auto add_line = [&](const auto& add) {
-    for (const Field<Row>& field : fields) {
-      if (&field != &fields.front()) text.add(",");
-      add(field);
-    }
-    text.add("\n");
-  };
-  add_line([&](const Field<Row>& field) { text.add(field.facts.heading); });
-  for (std::size_t i = 0; i < rows; ++i) {
-    const Row& row = row_at(i);
-    add_line([&](const Field<Row>& field) { add_csv_value(text, field.value(row)); });
-  }
+  std::vector<Json> headings;
+  for (const Field& field : fields) headings.emplace_back(field.heading());
+  add_csv_line(text, headings);
+  for (std::size_t i = 0; i < rows; ++i) add_csv_line(text, fields.values_of(row_at(i)));
 }
 
 /// Adds an object of JSON, of fields whose names have no point.
-template <typename Row>
-void add_object(LongText& text, const Fields<Row>& fields, const Row& row) {
-  char before = '{';
-  for (const Field<Row>& field : fields) {
-    const Json value = field.value(row);
-    if (value.is_discarded()) continue;
-    text.add({&before, 1}).add("\"").add(field.facts.name).add("\":").json(value);
-    before = ',';
-  }
-  text.add(before == '{' ? "{}" : "}");
-}
+void add_object(LongText& text, std::span<const Field> fields, std::span<const Json> values);
 
 /// Fields of a layer, and the values of one of its features.
-[[nodiscard]] tools::VectorFile::Field layer_field_of(const FieldFacts& facts);
-[[nodiscard]] tools::VectorFile::Value layer_value_of(const Json& value);
-template <typename Row>
-[[nodiscard]] std::vector<tools::VectorFile::Field> layer_fields_of(const Fields<Row>& fields) {
-  std::vector<tools::VectorFile::Field> all;
-  for (const Field<Row>& field : fields) all.push_back(layer_field_of(field.facts));
-  return all;
-}
-template <typename Row>
-[[nodiscard]] std::vector<tools::VectorFile::Value> layer_values_of(const Fields<Row>& fields,
-                                                                    const Row& row) {
-  std::vector<tools::VectorFile::Value> values;
-  for (const Field<Row>& field : fields) values.push_back(layer_value_of(field.value(row)));
-  return values;
-}
-
-/// The facts of what a door tells, for documents.
-template <typename Row>
-[[nodiscard]] std::vector<FieldFacts> documented(const Fields<Row>& fields, Door door, As as,
-                                                 const std::string& prefix = {}) {
-  std::vector<FieldFacts> all;
-  for (const Field<Row>& field : fields) {
-    const bool is_listed = as == As::kObject && field.facts.told.as == As::kList;
-    if (!field.facts.is_told(door, as) && !(is_listed && is_at(field.facts.told.doors, door)))
-      continue;
-    all.push_back(field.facts);
-    all.back().name.insert(0, prefix);
-  }
-  return all;
-}
+[[nodiscard]] std::vector<tools::VectorFile::Field> layer_fields_of(std::span<const Field> fields);
+[[nodiscard]] std::vector<tools::VectorFile::Value> layer_values_of(std::span<const Json> values);
 
 }  // namespace ptin::ask

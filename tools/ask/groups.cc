@@ -28,20 +28,16 @@ double coefficient_of_factor(const std::string& text) {
 
 }  // namespace
 
-Parameter error_row(std::optional<double>& error, std::string help) {
-  return {.name = "error",
-          .into = &error,
-          .metavar = "E",
-          .unit = Unit::kHeight,
-          .range = kTolerance,
-          .example = "5",
-          .help = std::move(help)};
+Parameter& add_error(Parameters& rows, std::optional<double>& error, std::string help) {
+  return rows.add("error", &error, "E", std::move(help))
+      .in(Unit::kHeight)
+      .within(kTolerance)
+      .like("5");
 }
 
 void add_detail(Parameters& rows, DetailRequest& detail, const std::string& error_more,
                 const std::string& vertices_help, Door doors) {
-  rows.push_back(error_row(detail.tolerance, "Certified error allowed" + error_more));
-  rows.back().doors = doors;
+  add_error(rows, detail.tolerance, "Certified error allowed" + error_more).at(doors);
   rows.add("vertices", &detail.vertices, "N", vertices_help).excluding("error").at(doors);
 }
 
@@ -127,73 +123,53 @@ void add_curvature(Parameters& rows, double& coefficient) {
       .at(Door::kProgram);
 }
 
-Parameter by_row(AnswerBy& by) {
-  return {.name = "by",
-          .into =
-              [&by](const std::string& name) {
-                by = name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars;
-              },
-          .metavar = "TEXT",
-          .choices = {"stars", "splits"},
-          .doors = Door::kProgram,
-          .help =
-              "stars: look up the triangles that live at the level; splits: refine T0, as the "
-              "paper has it. An exact answer is the same, at a level both are true (default "
-              "stars)"};
+void add_by(Parameters& rows, AnswerBy& by) {
+  const auto read = [&by](const std::string& name) {
+    by = name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars;
+  };
+  rows.add("by", read, "TEXT",
+           "stars: look up the triangles that live at the level; splits: refine T0, as the paper "
+           "has it. An exact answer is the same, at a level both are true (default stars)")
+      .of({"stars", "splits"})
+      .at(Door::kProgram);
 }
 
-Parameter threads_row(int& threads, std::string help, double most) {
-  return {.name = "threads",
-          .into = &threads,
-          .metavar = "N",
-          .range = {.least = 1, .most = most},
-          .doors = Door::kProgram,
-          .help = std::move(help)};
+void add_threads(Parameters& rows, int& threads, std::string help, double most) {
+  rows.add("threads", &threads, "N", std::move(help))
+      .within({.least = 1, .most = most})
+      .at(Door::kProgram);
 }
 
-Parameter memory_row(std::optional<std::uint64_t>& memory, std::string help) {
-  return {.name = "memory",
-          .into = [&memory](const std::string& text) { memory = tools::parse_memory(text, {}); },
-          .metavar = "SIZE",
-          .doors = Door::kProgram,
-          .help = std::move(help)};
+Parameter& add_memory(Parameters& rows, std::optional<std::uint64_t>& memory, std::string help) {
+  const auto read = [&memory](const std::string& text) { memory = tools::parse_memory(text, {}); };
+  return rows.add("memory", read, "SIZE", std::move(help)).at(Door::kProgram);
 }
 
-Parameter crs_row(std::string& crs) {
-  return {.name = "crs",
-          .into = &crs,
-          .doors = Door::kService,
-          .example = "CRS84",
-          .help =
-              "CRS of positions that come and go: CRS84 (longitude, latitude; without it), "
-              "native, or an EPSG code or OGC URI"};
+void add_format(Parameters& rows, std::string& format, std::span<const Format> formats) {
+  rows.add("f", &format, "", "The format of the answer; without it the header Accept chooses")
+      .at(Door::kService)
+      .like(formats.front().name);
+  for (const Format& one : formats) rows.back().choices.push_back(one.name);
 }
 
-Parameter coords_row(std::string& coords, std::string help, std::string_view example) {
-  return {.name = "coords",
-          .into = &coords,
-          .required = Door::kService,
-          .doors = Door::kService,
-          .example = example,
-          .help = std::move(help)};
+Parameter& add_text(Parameters& rows, std::string_view name, std::string help,
+                    std::string_view example) {
+  return rows
+      .add(
+          name, [](const std::string&) {}, "", std::move(help))
+      .at(Door::kService)
+      .like(example);
 }
 
-Parameter format_row(std::string& format, std::span<const Format> formats) {
-  Parameter row{.name = "f",
-                .into = &format,
-                .doors = Door::kService,
-                .example = formats.front().name,
-                .help = "The format of the answer; without it the header Accept chooses"};
-  for (const Format& one : formats) row.choices.push_back(one.name);
-  return row;
+Parameter& add_coords(Parameters& rows, std::string help, std::string_view example) {
+  return add_text(rows, "coords", std::move(help), example).required_at(Door::kService);
 }
 
-Parameter ignored_row(std::string_view name, std::string help, std::string_view example) {
-  return {.name = name,
-          .into = [](const std::string&) {},
-          .doors = Door::kService,
-          .example = example,
-          .help = std::move(help)};
+void add_crs(Parameters& rows) {
+  add_text(rows, "crs",
+           "CRS of positions that come and go: CRS84 (longitude, latitude; without it), native, or "
+           "an EPSG code or OGC URI",
+           "CRS84");
 }
 
 }  // namespace ptin::ask

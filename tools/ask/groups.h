@@ -15,13 +15,15 @@
 
 namespace ptin::ask {
 
+// Each adds its rows; those of one row return it.
+
+/// `error`.
+Parameter& add_error(Parameters& rows, std::optional<double>& error, std::string help);
 /// `error` and `vertices`, of which at most one may be given: the level of detail.
 /// @param error_more     What an error means to this question, behind the words that hold for all.
 /// @param vertices_help  What it asks for.
 void add_detail(Parameters& rows, DetailRequest& detail, const std::string& error_more,
                 const std::string& vertices_help, Door doors = Door::kBoth);
-/// `error` alone.
-[[nodiscard]] Parameter error_row(std::optional<double>& error, std::string help);
 
 /// A region as it is given: at most one of these.
 struct RegionText {
@@ -56,27 +58,28 @@ void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
 /// (engine/query/sight/curvature.h).
 void add_curvature(Parameters& rows, double& coefficient);
 /// --by: stars or splits.
-[[nodiscard]] Parameter by_row(AnswerBy& by);
+void add_by(Parameters& rows, AnswerBy& by);
 /// --threads. 0: as many as the process may use.
-[[nodiscard]] Parameter threads_row(int& threads, std::string help, double most = 1024);
+void add_threads(Parameters& rows, int& threads, std::string help, double most = 1024);
 /// --memory. None: the program chooses.
-[[nodiscard]] Parameter memory_row(
-    std::optional<std::uint64_t>& memory,
-    std::string help = "Memory that the answer may take, as 512M or 2G (default 4G)");
+Parameter& add_memory(Parameters& rows, std::optional<std::uint64_t>& memory,
+                      std::string help =
+                          "Memory that the answer may take, as 512M or 2G (default "
+                          "4G)");
 
 /// A format of an answer, as `f` names it.
 struct Format {
   std::string_view name;
   std::string_view media;
 };
-/// `crs`: that of positions which come from a client of the service and go to it.
-[[nodiscard]] Parameter crs_row(std::string& crs);
-/// `coords`: positions and shapes of a client as WKT.
-[[nodiscard]] Parameter coords_row(std::string& coords, std::string help, std::string_view example);
 /// `f`. The header Accept chooses where it does not.
-[[nodiscard]] Parameter format_row(std::string& format, std::span<const Format> formats);
-/// A parameter of the service that clients may give, and that has no effect.
-[[nodiscard]] Parameter ignored_row(std::string_view name, std::string help,
-                                    std::string_view example = {});
+void add_format(Parameters& rows, std::string& format, std::span<const Format> formats);
+/// A parameter of the service whose text has no effect, or is read by its question.
+Parameter& add_text(Parameters& rows, std::string_view name, std::string help,
+                    std::string_view example = {});
+/// `coords`: positions and shapes of a client as WKT, which the question reads.
+Parameter& add_coords(Parameters& rows, std::string help, std::string_view example);
+/// `crs`: that of positions which come from a client of the service and go to it.
+void add_crs(Parameters& rows);
 
 }  // namespace ptin::ask

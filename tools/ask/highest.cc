@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/highest.h"
-
 #include <cstdint>
 #include <limits>
 
+#include "tools/ask/questions.h"
 #include "tools/facts/answers.h"
 
 namespace ptin::ask {
@@ -32,7 +31,7 @@ Fields<HighestResult> point_fields() {
 
 }  // namespace
 
-void add_highest(Parameters& rows, HighestQuestion& question) {
+void add_question(Parameters& rows, HighestQuestion& question) {
   HighestRequest& request = question.request;
   add_region(rows, question.region, RegionKinds::kWithInside, Door::kBoth);
   rows.add("lowest", &request.lowest, "", "The lowest point instead").like("true");
@@ -46,6 +45,7 @@ void add_highest(Parameters& rows, HighestQuestion& question) {
   add_detail(rows, request.detail, "; the height comes with an interval",
              "The highest of the TIN of the terrain's N most important vertices, instead of an "
              "error; its height comes with an interval");
+  add_crs(rows);
 }
 
 Fields<HighestAnswer> highest_fields() {
@@ -61,7 +61,7 @@ Fields<HighestAnswer> highest_fields() {
              "Unless it is `surface` there is no point: the region lies outside of the hull, or "
              "holds nothing but voids.",
              [](const Row& a) { return tools::name_of(a.result->state); });
-  const std::size_t first_of_program = fields.size();
+  fields.next = Told::kProgram;
   fields.add("lowest", "boolean", "",
              "The lowest point was asked for; \"highest\" below then means that.", &Row::lowest);
   fields.add_object(
@@ -73,7 +73,6 @@ Fields<HighestAnswer> highest_fields() {
                    "The highest vertices in the region that touch the surface, falling, equal ones "
                    "from south to north and west to east; at most as many as `-k` says.",
                    vertex_fields(), [](const Row& a) { return &a.result->vertices; });
-  fields.tell_at(Door::kProgram, first_of_program);
   return fields;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/isolines.h"
+#include "tools/ask/questions.h"
 
 namespace ptin::ask {
 
@@ -9,7 +9,7 @@ constexpr std::string_view kOfLevels = "Ascending, each once.";
 
 }  // namespace
 
-void add_isolines(Parameters& rows, IsolineQuestion& question) {
+void add_question(Parameters& rows, IsolineQuestion& question) {
   IsolineRequest& request = question.request;
   add_levels(rows, question.levels, "Heights of the lines, instead of an interval",
              "Every multiple of D, from the base", Door::kBoth);
@@ -22,6 +22,7 @@ void add_isolines(Parameters& rows, IsolineQuestion& question) {
            "polygons")
       .with_default()
       .at(Door::kProgram);
+  add_crs(rows);
 }
 
 Fields<IsolineRow> isoline_row_fields() {
@@ -29,14 +30,15 @@ Fields<IsolineRow> isoline_row_fields() {
     return [member](const IsolineRow& r) { return r.step ? Json(r.step->*member) : kLeftOut; };
   };
   Fields<IsolineRow> fields;
-  fields.add("ID", "integer", "", "From 0.", &IsolineRow::id, Door::kProgram);
+  fields.add("ID", "integer", "", "From 0.", Told::kProgram, &IsolineRow::id);
   fields.add("elev", "number", kHeightUnit, "Of the line.", &IsolineRow::elevation);
-  fields.add("ring", "boolean", "", "The line is closed.", &IsolineRow::ring, Door::kService);
-  fields.add("step", "integer", "", "From 0.", of_step(&IsolineStep::step), Door::kProgram);
+  fields.add("ring", "boolean", "", "The line is closed.", Told::kService, &IsolineRow::ring);
+  fields.next = Told::kProgram;
+  fields.add("step", "integer", "", "From 0.", of_step(&IsolineStep::step));
   // Splits may exceed 32 bits, and integers of a shapefile do not.
-  fields.add("splits", "number", "", "By then.", of_step(&IsolineStep::splits), Door::kProgram);
+  fields.add("splits", "number", "", "By then.", of_step(&IsolineStep::splits));
   fields.add("error", "number", kHeightUnit, "Certified by then.",
-             of_step(&IsolineStep::certified_error), Door::kProgram);
+             of_step(&IsolineStep::certified_error));
   return fields;
 }
 

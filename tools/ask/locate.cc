@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/locate.h"
-
+#include "tools/ask/questions.h"
 #include "tools/facts/answers.h"
 
 namespace ptin::ask {
@@ -18,11 +17,13 @@ Json triangle_json(const LocatedRow& row) {
 
 }  // namespace
 
-void add_locate(Parameters& rows, LocateRequest& request) {
+void add_question(Parameters& rows, LocateRequest& request) {
+  add_coords(rows, "Positions as WKT, POINT or MULTIPOINT", "POINT(-118.3 34.34)");
   add_detail(
       rows, request.detail, "; heights come with intervals",
       "The TIN of the terrain's N most important vertices, instead of an error; heights come "
       "with intervals");
+  add_crs(rows);
 }
 
 LocatedRow::LocatedRow(const MapPoint& position, const LocatedPoint& located, const AffineMap& map)
@@ -36,10 +37,10 @@ LocatedRow::LocatedRow(const MapPoint& position, const LocatedPoint& located, co
 Fields<LocatedRow> located_fields() {
   using Row = LocatedRow;
   Fields<Row> fields;
-  fields.add(
-      "x", "number", kMapUnit, "As asked.", [](const Row& r) { return r.at.x; }, As::kNoFeature);
-  fields.add(
-      "y", "number", kMapUnit, "As asked.", [](const Row& r) { return r.at.y; }, As::kNoFeature);
+  fields.add("x", "number", kMapUnit, "As asked.", Told::kNoFeature,
+             [](const Row& r) { return r.at.x; });
+  fields.add("y", "number", kMapUnit, "As asked.", Told::kNoFeature,
+             [](const Row& r) { return r.at.y; });
   fields.add("state", "string", "", "What is there.",
              [](const Row& r) { return tools::name_of(r.point.state); });
   fields.add("height", "number or null", kHeightUnit,
@@ -52,13 +53,13 @@ Fields<LocatedRow> located_fields() {
              "The exact height is no higher, if the exact TIN is surface there.",
              [](const Row& r) { return r.point.height_max; });
   fields.add("id", "string", "",
-             "Its column or attribute (`--id`); left out where the input has none.", &Row::id,
-             Door::kProgram);
+             "Its column or attribute (`--id`); left out where the input has none.", Told::kProgram,
+             &Row::id);
   fields.add(
       "triangle", "array or null", "",
       "Its corners, counter-clockwise from the southernmost, as `[x, y, height]`; no height: "
       "null.",
-      triangle_json, As::kObject);
+      Told::kObject, triangle_json);
   return fields;
 }
 

@@ -27,7 +27,6 @@ class LongText {
   LongText& add(std::string_view text);
   /// As few digits as read back to the same double; null where it is not finite.
   LongText& number(double value);
-  LongText& truth(bool value) { return add(value ? "true" : "false"); }
   LongText& json(const Json& value);
 
   [[nodiscard]] std::string take() { return std::move(text_); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/mesh.h"
+#include "tools/ask/questions.h"
 
 namespace ptin::ask {
 

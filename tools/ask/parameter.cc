@@ -18,21 +18,15 @@ namespace ptin::ask {
 
 namespace {
 
-/// The names of a list between blanks.
-std::vector<std::string_view> names_in(std::string_view list) {
-  std::vector<std::string_view> names;
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find(' '), list.size());
-    names.push_back(list.substr(0, end));
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return names;
-}
-
 const Parameter* find(std::span<const Parameter> parameters, std::string_view name) {
   const auto found = std::find_if(parameters.begin(), parameters.end(),
                                   [&](const Parameter& p) { return p.name == name; });
   return found == parameters.end() ? nullptr : &*found;
+}
+
+template <typename... Types>
+bool holds_any_of(const Into& into) noexcept {
+  return (std::holds_alternative<Types>(into) || ...);
 }
 
 /// "in the height's unit"; empty where there is none to tell.
@@ -48,6 +42,21 @@ std::string words_of(Unit unit, Door door) {
       break;
   }
   return {};
+}
+
+/// "a finite number > 0".
+std::string words_of(const Range& range, bool whole = false) {
+  const bool has_least = range.least > kFinite.least, has_most = range.most < kFinite.most;
+  const std::string kind = whole                       ? "a whole number"
+                           : has_least && has_most     ? "a number"
+                           : std::isfinite(range.most) ? "a finite number"
+                                                       : "a number";
+  const double least = whole && !has_least ? 0 : range.least;
+  if (has_least && has_most) {
+    return kind + " from " + tools::short_number(least) + " to " + tools::short_number(range.most);
+  }
+  if (!has_least && !whole) return kind;
+  return kind + (range.is_above ? " > " : " >= ") + tools::short_number(least);
 }
 
 bool has_own_unit(const Parameter& p, Door door) {
@@ -115,6 +124,16 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::vector<std::string_view> parts_of(std::string_view text, char mark) {
+  std::vector<std::string_view> parts;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(mark), text.size());
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return parts;
+}
+
 std::string name_at(const Parameter& p, Door door) {
   if (door == Door::kService) return std::string(p.name);
   if (p.words.empty()) return "--" + std::string(p.name);
@@ -138,8 +157,8 @@ std::string default_of(const Parameter& p) {
         using Type = std::decay_t<decltype(into)>;
         if constexpr (std::is_same_v<Type, std::string*>) return *into;
         if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*into);
-        if constexpr (std::is_same_v<Type, int*> || std::is_same_v<Type, std::uint32_t*> ||
-                      std::is_same_v<Type, std::uint64_t*>) {
+        if constexpr (std::is_integral_v<std::remove_pointer_t<Type>> &&
+                      !std::is_same_v<Type, bool*>) {
           return std::to_string(*into);
         }
         return {};
@@ -148,35 +167,17 @@ std::string default_of(const Parameter& p) {
 }
 
 bool is_whole(const Parameter& p) noexcept {
-  return std::holds_alternative<int*>(p.into) ||
-         std::holds_alternative<std::vector<int>*>(p.into) ||
-         std::holds_alternative<std::uint32_t*>(p.into) ||
-         std::holds_alternative<std::uint64_t*>(p.into) ||
-         std::holds_alternative<std::optional<std::uint64_t>*>(p.into);
+  return holds_any_of<int*, std::vector<int>*, std::uint32_t*, std::uint64_t*,
+                      std::optional<std::uint64_t>*>(p.into);
 }
 
 bool is_text(const Parameter& p) noexcept {
-  return std::holds_alternative<std::string*>(p.into) ||
-         std::holds_alternative<std::vector<std::string>*>(p.into) ||
-         std::holds_alternative<std::function<void(const std::string&)>>(p.into);
+  return holds_any_of<std::string*, std::vector<std::string>*,
+                      std::function<void(const std::string&)>>(p.into);
 }
 
 bool is_list(const Parameter& p) noexcept {
   return p.most_values > 1 || std::holds_alternative<std::optional<Window>*>(p.into);
-}
-
-std::string words_of(const Range& range, bool whole) {
-  const bool has_least = range.least > kFinite.least, has_most = range.most < kFinite.most;
-  const std::string kind = whole                       ? "a whole number"
-                           : has_least && has_most     ? "a number"
-                           : std::isfinite(range.most) ? "a finite number"
-                                                       : "a number";
-  const double least = whole && !has_least ? 0 : range.least;
-  if (has_least && has_most) {
-    return kind + " from " + tools::short_number(least) + " to " + tools::short_number(range.most);
-  }
-  if (!has_least && !whole) return kind;
-  return kind + (range.is_above ? " > " : " >= ") + tools::short_number(least);
 }
 
 double Reading::number_of(const Parameter& p, const std::string& text) const {
@@ -201,12 +202,30 @@ double Reading::number_of(const Parameter& p, const std::string& text) const {
   refuse_value(p, door_, words, text);
 }
 
-void Reading::put(const Parameter& p, const std::string& text, double& number) {
-  number = number_of(p, text);
-  if (!has_own_unit(p, door_)) return;
-  const std::optional<tools::Length> length = tools::length_of(text);
-  if (length && length->has_unit()) {
-    waiting_.push_back({name_at(p, door_), text, *length, p.unit, &number});
+template <typename Value>
+void Reading::put(const Parameter& p, std::span<const std::string> values, Value& value) {
+  const std::string text = values.empty() ? std::string() : values.back();
+  if constexpr (std::is_same_v<Value, bool>) {
+    value = values.empty() || truth_of(p, door_, text);
+  } else if constexpr (std::is_integral_v<Value>) {
+    value = static_cast<Value>(whole_of(p, door_, text));
+  } else if constexpr (std::is_same_v<Value, double>) {
+    value = number_of(p, text);
+    const auto length = has_own_unit(p, door_) ? tools::length_of(text) : std::nullopt;
+    if (length && length->has_unit()) {
+      waiting_.push_back({name_at(p, door_), text, *length, p.unit, &value});
+    }
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    value = choice_of(p, door_, text);
+  } else if constexpr (std::is_same_v<Value, Window>) {
+    std::vector<double> numbers;
+    for (const std::string& number : values) numbers.push_back(number_of(p, number));
+    value = tools::window_of(numbers, name_at(p, door_), door_ == Door::kService);
+  } else if constexpr (requires { value.emplace(); }) {
+    put(p, values, value.emplace());
+  } else {
+    if constexpr (requires { value.resize(values.size()); }) value.resize(values.size());
+    for (std::size_t i = 0; i < value.size(); ++i) put(p, values.subspan(i, 1), value[i]);
   }
 }
 
@@ -220,57 +239,20 @@ void Reading::take(const Parameter& p, std::span<const std::string> values) {
                std::to_string(values.size()) + (values.size() == 1 ? " was" : " were") + " given",
            name_at(p, door_));
   }
-  const std::string text = values.empty() ? std::string() : values.back();
-  const auto whole = [&] { return whole_of(p, door_, text); };
-  struct Put {
-    Reading& reading;
-    const Parameter& p;
-    std::span<const std::string> values;
-    const std::string& text;
-    const decltype(whole)& number;
-
-    void operator()(bool* into) const {
-      *into = values.empty() || truth_of(p, reading.door_, text);
-    }
-    void operator()(double* into) const { reading.put(p, text, *into); }
-    void operator()(std::optional<double>* into) const { reading.put(p, text, into->emplace()); }
-    void operator()(std::vector<double>* into) const {
-      into->resize(values.size());
-      for (std::size_t i = 0; i < values.size(); ++i) reading.put(p, values[i], (*into)[i]);
-    }
-    void operator()(std::optional<std::array<double, 4>>* into) const {
-      into->emplace();
-      for (std::size_t i = 0; i < 4; ++i) (**into)[i] = reading.number_of(p, values[i]);
-    }
-    void operator()(int* into) const { *into = static_cast<int>(number()); }
-    void operator()(std::vector<int>* into) const {
-      into->clear();
-      for (const std::string& value : values) {
-        into->push_back(static_cast<int>(whole_of(p, reading.door_, value)));
-      }
-    }
-    void operator()(std::uint32_t* into) const { *into = static_cast<std::uint32_t>(number()); }
-    void operator()(std::uint64_t* into) const { *into = number(); }
-    void operator()(std::optional<std::uint64_t>* into) const { *into = number(); }
-    void operator()(std::string* into) const { *into = choice_of(p, reading.door_, text); }
-    void operator()(std::vector<std::string>* into) const {
-      into->assign(values.begin(), values.end());
-    }
-    void operator()(std::optional<Window>* into) const {
-      std::vector<double> numbers;
-      for (const std::string& value : values) numbers.push_back(reading.number_of(p, value));
-      *into = tools::window_of(numbers, name_at(p, reading.door_), reading.door_ == Door::kService);
-    }
-    void operator()(const std::function<void(const std::string&)>& read) const {
-      const std::string value = choice_of(p, reading.door_, text);
+  const auto put_all = [&](const auto& into) {
+    if constexpr (std::is_pointer_v<std::decay_t<decltype(into)>>) {
+      put(p, values, *into);
+    } else {
+      std::string value;
+      put(p, values, value);
       try {
-        read(value);
+        into(value);
       } catch (const Error& e) {
-        throw Error(e.code(), e.message(), name_at(p, reading.door_));
+        throw Error(e.code(), e.message(), name_at(p, door_));
       }
     }
   };
-  std::visit(Put{*this, p, values, text, whole}, p.into);
+  std::visit(put_all, p.into);
 }
 
 void Reading::check(std::span<const Parameter> parameters) const {
@@ -284,12 +266,12 @@ void Reading::check(std::span<const Parameter> parameters) const {
              name);
     }
     if (!is_at(p.bound_at, door_)) continue;
-    for (const std::string_view other : names_in(p.excludes)) {
+    for (const std::string_view other : parts_of(p.excludes, ' ')) {
       const Parameter* const given = has(other) ? find(parameters, other) : nullptr;
       if (given != nullptr)
         refuse("excludes " + name_at(*given, door_) + "; give one of them", name);
     }
-    for (const std::string_view other : names_in(p.needs)) {
+    for (const std::string_view other : parts_of(p.needs, ' ')) {
       const Parameter* const needed = has(other) ? nullptr : find(parameters, other);
       if (needed != nullptr) refuse("needs " + name_at(*needed, door_) + "; give both", name);
     }

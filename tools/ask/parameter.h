@@ -177,8 +177,9 @@ class Reading {
     double* number;
   };
   [[nodiscard]] double number_of(const Parameter& parameter, const std::string& text) const;
-  /// Puts a number, and notes it where it waits for its unit.
-  void put(const Parameter& parameter, const std::string& text, double& number);
+  /// Puts a value, the last one; the values of a list. Notes a number that waits for its unit.
+  template <typename Value>
+  void put(const Parameter& parameter, std::span<const std::string> values, Value& value);
 
   Door door_;
   std::map<std::string, bool, std::less<>> given_;
@@ -187,7 +188,7 @@ class Reading {
 
 /// Without blanks before and behind.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
-/// "a finite number > 0".
-[[nodiscard]] std::string words_of(const Range& range, bool whole = false);
+/// The parts of a text between marks; none of an empty one.
+[[nodiscard]] std::vector<std::string_view> parts_of(std::string_view text, char mark);
 
 }  // namespace ptin::ask

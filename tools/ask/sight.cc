@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/sight.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +7,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "tools/ask/answer_facts.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/facts/quantity.h"
@@ -47,49 +45,53 @@ double hertz_of(const std::string& text) {
   return hertz;
 }
 
-/// Adds the fields of a place on the line.
-/// @param tables  Those of them that tables and layers have.
-void add_place(Fields<SightRow>& fields, const std::string& name,
-               std::optional<SightPoint> SightRow::*place,
+/// Adds an object of JSON for a place on the line: null where there is none.
+/// @param tables  What tables and layers have of it.
+void add_place(Fields<SightRow>& fields, const std::string& name, std::string_view type,
+               std::string_view meaning, std::optional<SightPoint> SightRow::*place,
                std::initializer_list<std::string_view> tables) {
-  const auto add = [&](const std::string& part, std::string_view unit, std::string_view meaning,
-                       auto value) {
-    const bool is_told = std::find(tables.begin(), tables.end(), part) != tables.end();
-    fields.add(
-        name + "." + part, "number", unit, meaning,
-        [place, value](const SightRow& row) {
-          return row.*place ? Json(value(*(row.*place))) : kLeftOut;
-        },
-        is_told ? As::kAll : As::kObject);
+  using Point = SightPoint;
+  Fields<Point> parts;
+  const auto told = [&](std::string_view part) {
+    return std::count(tables.begin(), tables.end(), part) > 0 ? Told::kAll : Told::kObject;
   };
-  add("x", kMapUnit, "Of the place.", [](const SightPoint& p) { return p.position.x; });
-  add("y", kMapUnit, "Of the place.", [](const SightPoint& p) { return p.position.y; });
-  add("distance", kHeightUnit, "Over ground, from the first end.",
-      [](const SightPoint& p) { return p.distance; });
-  add("height", kHeightUnit, "Of the line there.", [](const SightPoint& p) { return p.height; });
+  parts.add("x", "number", kMapUnit, "Of the place.", told("x"),
+            [](const Point& p) { return p.position.x; });
+  parts.add("y", "number", kMapUnit, "Of the place.", told("y"),
+            [](const Point& p) { return p.position.y; });
+  parts.add("distance", "number", kHeightUnit, "Over ground, from the first end.", told("distance"),
+            &Point::distance);
+  parts.add("height", "number", kHeightUnit, "Of the line there.", told("height"), &Point::height);
+  fields.add_object(name, type, meaning, parts, place);
 }
 
 /// Adds a bound of the clearance, which objects tell of a place alone.
 void add_clearance(Fields<SightRow>& fields, const std::string& name, std::string_view meaning,
                    double SightResult::*bound) {
-  fields.add(
-      name, "number or null", kHeightUnit, meaning,
-      [bound](const SightRow& r) { return r.clearance ? Json(r.result.*bound) : kLeftOut; },
-      As::kObject);
-  fields.add(
-      name, "number", kHeightUnit, "The same.",
-      [bound](const SightRow& r) { return r.result.*bound; }, As::kNoObject);
-}
-
-/// An object where there is a place, and null elsewhere.
-auto object_at(std::optional<SightPoint> SightRow::*place) {
-  return [place](const SightRow& row) { return row.*place ? Json(Json::object()) : Json(); };
+  fields.add(name, "number or null", kHeightUnit, meaning, Told::kObject,
+             [bound](const SightRow& r) { return r.clearance ? Json(r.result.*bound) : kLeftOut; });
+  fields.add(name, "number", kHeightUnit, "The same.", Told::kNoObject,
+             [bound](const SightRow& r) { return r.result.*bound; });
 }
 
 }  // namespace
 
-void add_sight(Parameters& rows, SightQuestion& question) {
+void add_question(Parameters& rows, SightQuestion& question) {
   SightRequest& request = question.request;
+  add_coords(
+      rows,
+      "The two ends as WKT, LINESTRING of two positions, or a MULTILINESTRING of several pairs",
+      "LINESTRING(-118.3 34.34, -118.29 34.35)")
+      .required_at(Door::kNone);
+  add_text(rows, "pairs", "Pairs instead of coords: [x, y, height, x, y, height] each")
+      .excluding("coords")
+      .as_json();
+  rows.add("heights", &question.end_heights, "",
+           "Heights of the two ends of coords; 2,2 without it")
+      .in(Unit::kHeight)
+      .values(2, 2)
+      .at(Door::kService)
+      .like("2,10");
   rows.add("absolute", &request.absolute, "", "Heights of the ends are absolute").like("true");
   rows.add("verdict", &request.verdict_only, "",
            "Only the verdict: faster; obstruction is then any point below ground");
@@ -109,6 +111,7 @@ void add_sight(Parameters& rows, SightQuestion& question) {
            "Stop after this many stars (--by splits: records) for a pair; may answer "
            "undecided")
       .at(Door::kProgram);
+  add_crs(rows);
 }
 
 void set_ground(SightQuestion& question, const Ground& ground) {
@@ -141,58 +144,49 @@ Fields<SightRow> sight_fields() {
       "verdict", "string or null", "",
       "`visible`, `hidden` or `undecided`; null: heights are above ground, and an end has none "
       "below it.",
-      [](const Row& r) {
+      Told::kObject, [](const Row& r) {
         const bool is_defined = r.result.verdict != SightVerdict::kUndefined;
         return is_defined ? Json(tools::name_of(r.result.verdict)) : Json();
-      },
-      As::kObject);
-  fields.add(
-      "verdict", "string", "", "The same; `undefined` in the place of null.",
-      [](const Row& r) { return tools::name_of(r.result.verdict); }, As::kNoObject);
-  fields.add(
-      "ends", "array of strings", "", "The state of the ground below each end.",
-      [](const Row& r) {
-        return Json{tools::name_of(r.result.state_a), tools::name_of(r.result.state_b)};
-      },
-      As::kObject);
+      });
+  fields.add("verdict", "string", "", "The same; `undefined` in the place of null.",
+             Told::kNoObject, [](const Row& r) { return tools::name_of(r.result.verdict); });
+  fields.add("ends", "array of strings", "", "The state of the ground below each end.",
+             Told::kObject, [](const Row& r) {
+               return Json{tools::name_of(r.result.state_a), tools::name_of(r.result.state_b)};
+             });
   fields.add("length", "number", kHeightUnit, "Of the line over ground.",
              [](const Row& r) { return r.result.length; });
-  fields.add("obstruction", "object or null", "",
-             "Where the line first goes below ground; null unless hidden.",
-             object_at(&Row::obstruction), As::kObject);
-  add_place(fields, "obstruction", &Row::obstruction, {"x", "y", "distance"});
-  fields.add("clearance", "object or null", "",
-             "The least height of the line above ground, ends included; null where none is known.",
-             object_at(&Row::clearance), As::kObject);
+  add_place(fields, "obstruction", "object or null",
+            "Where the line first goes below ground; null unless hidden.", &Row::obstruction,
+            {"x", "y", "distance"});
   add_clearance(fields, "clearance.min", "The exact clearance is no less; null: without limit.",
                 &SightResult::clearance_min);
   add_clearance(fields, "clearance.max", "The exact clearance is no more; null: without limit.",
                 &SightResult::clearance_max);
-  add_place(fields, "clearance", &Row::clearance, {"distance"});
+  add_place(fields, "clearance", "object or null",
+            "The least height of the line above ground, ends included; null where none is known.",
+            &Row::clearance, {"distance"});
   fields.add("void_length", "number or null", kHeightUnit,
              "Of the line over voids; null where it is not known.",
              [](const Row& r) { return r.result.void_length; });
-  fields.add(
-      "fresnel", "object", "",
-      "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
-      "left out.",
-      [](const Row&) { return kLeftOut; }, As::kObject);
   fields.add("fresnel.ratio", "number or null", "", "That clearance over that radius.",
              [](const Row& r) { return r.result.fresnel_ratio; });
-  add_place(fields, "fresnel", &Row::fresnel, {"x", "y", "distance", "height"});
-  fields.add(
-      "certified_deviation", "number or null", kHeightUnit,
-      "What is not known of the surface where the line is undecided; 0: nothing.",
-      [](const Row& r) { return r.result.certified_deviation; }, As::kObject);
-  fields.add(
-      "exact", "boolean", "", "All that is told holds of the source.",
-      [](const Row& r) { return r.result.exact; }, As::kObject);
-  fields.add("cost", "object", "", "What the pair took.",
-             [](const Row& r) { return cost_json(r.result.cost); }, {Door::kProgram, As::kObject});
+  add_place(
+      fields, "fresnel", "object",
+      "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
+      "left out.",
+      &Row::fresnel, {"x", "y", "distance", "height"});
+  fields.add("certified_deviation", "number or null", kHeightUnit,
+             "What is not known of the surface where the line is undecided; 0: nothing.",
+             Told::kObject, [](const Row& r) { return r.result.certified_deviation; });
+  fields.add("exact", "boolean", "", "All that is told holds of the source.", Told::kObject,
+             [](const Row& r) { return r.result.exact; });
+  fields.add("cost", "object", "", "What the pair took.", Told::kProgram & Told::kObject,
+             [](const Row& r) { return cost_json(r.result.cost); });
   fields.add("id", "string", "",
              "Of each of `pairs`: its column or attribute (`--id`); left out where the input has "
              "none.",
-             &Row::id, Door::kProgram);
+             Told::kProgram, &Row::id);
   return fields;
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/ask/viewshed.h"
+#include "tools/ask/questions.h"
 
 namespace ptin::ask {
 
-void add_viewshed(Parameters& rows, ViewshedQuestion& question) {
+void add_question(Parameters& rows, ViewshedQuestion& question) {
+  add_coords(rows, "The observer's position as WKT, POINT", "POINT(-118.3 34.34)");
   ViewshedRequest& request = question.request;
   rows.add("x", &question.x, "", "The observer's position")
       .spelled("X")
@@ -46,6 +47,7 @@ void add_viewshed(Parameters& rows, ViewshedQuestion& question) {
       "target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
       "The TIN of the terrain's N most important vertices, and more towards the observer, "
       "instead of an error; undecided targets as with an error");
+  add_crs(rows);
 }
 
 void set_ground(ViewshedRequest& request, const Ground& ground) {
@@ -70,11 +72,12 @@ Fields<ViewshedAnswer> viewshed_fields() {
   const Fields<Viewshed> vertices = counts_of(
       &Viewshed::visible_vertices, &Viewshed::hidden_vertices, &Viewshed::undecided_vertices);
   Fields<Row> fields;
+  fields.next = Told::kService;
   fields.add_parts("", vertices, &Row::seen);
-  fields.tell_at(Door::kService, 0);
+  fields.next = Told::kAll;
   fields.add("eye_height", "number", kHeightUnit, "Of the observer, absolute.",
              [](const Row& a) { return a.seen->eye_height; });
-  const std::size_t first_of_program = fields.size();
+  fields.next = Told::kProgram;
   fields.add("width", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
              [](const Row& a) { return a.seen->width; });
   fields.add("height", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
@@ -85,7 +88,6 @@ Fields<ViewshedAnswer> viewshed_fields() {
   fields.add_object("vertices", "object or null",
                     "Vertices that are targets; null where the output is a raster.", vertices,
                     [](const Row& a) { return a.of_pixels ? nullptr : a.seen; });
-  fields.tell_at(Door::kProgram, first_of_program);
   return fields;
 }
 
@@ -94,10 +96,10 @@ Fields<Viewshed::Target> target_fields() {
   constexpr std::string_view kCertain = "The full TIN of the source says the same.";
   Fields<Row> fields;
   fields.add("height", "number", kHeightUnit, "Of the vertex.", &Row::height);
-  fields.add("visible", "flag", "", "1: it is.", &Row::visible, Door::kProgram);
-  fields.add("certain", "flag", "", kCertain, &Row::certain, Door::kProgram);
-  fields.add("visible", "boolean", "", "It is.", &Row::visible, Door::kService);
-  fields.add("certain", "boolean", "", kCertain, &Row::certain, Door::kService);
+  fields.add("visible", "flag", "", "1: it is.", Told::kProgram, &Row::visible);
+  fields.add("certain", "flag", "", kCertain, Told::kProgram, &Row::certain);
+  fields.add("visible", "boolean", "", "It is.", Told::kService, &Row::visible);
+  fields.add("certain", "boolean", "", kCertain, Told::kService, &Row::certain);
   return fields;
 }
 

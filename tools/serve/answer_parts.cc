@@ -92,7 +92,9 @@ void add_cost(http::Response& response, const QueryCost& cost) {
 const ask::Format& format_of(const Asked& asked) {
   if (!asked.question.text("f").empty()) {
     std::string chosen;
-    asked.question.read(std::vector{ask::format_row(chosen, asked.formats)});
+    ask::Parameters rows;
+    ask::add_format(rows, chosen, asked.formats);
+    asked.question.read(rows);
     for (const ask::Format& format : asked.formats) {
       if (format.name == chosen) return format;
     }
@@ -167,16 +169,17 @@ void add_point(LongText& text, const MapPoint& p) {
   text.add("}");
 }
 
-Places places_of(const Asked& asked, const std::string& crs) {
-  return {asked.collection->crs, crs, asked.collection->bounds, asked.request.share};
+Places places_of(const Asked& asked) {
+  return {asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
+          asked.request.share};
 }
 
 Json certainty_json(const Asked& asked, double certified_error, double certified_deviation,
                     bool exact) {
-  return object_of(ask::answer_fields().told(ask::Door::kService, ask::As::kObject),
-                   ask::AnswerFacts{certified_error, certified_deviation,
-                                    border_moved_at_most(asked.terrain().store(), certified_error),
-                                    exact, &asked.collection->crs});
+  return ask::answer_fields().told(kObject).object_of(
+      {certified_error, certified_deviation,
+       border_moved_at_most(asked.terrain().store(), certified_error), exact,
+       &asked.collection->crs});
 }
 
 void check_detail(const Asked& asked, const DetailRequest& detail) {

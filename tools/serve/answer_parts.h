@@ -24,25 +24,32 @@ namespace ptin::serve {
 using ask::append_json_number;
 using ask::Json;
 using ask::LongText;
+using ask::Told;
 
 constexpr std::string_view kJson = "application/json";
 constexpr std::string_view kGeoJson = "application/geo+json";
 constexpr std::string_view kCoverageJson = "application/prs.coverage+json";
 constexpr std::string_view kCsv = "text/csv; charset=utf-8";
 
-/// Reads the parameters of a question into what holds them; `parameters_of(Values&)` has their rows.
-/// @throws http::Problem 400
+/// The rows of a question; add_question() has them.
+template <typename Values>
+[[nodiscard]] ask::Parameters rows_of(Values& values) {
+  ask::Parameters rows;
+  add_question(rows, values);
+  return rows;
+}
+/// Reads the parameters of a question into what holds them.  @throws http::Problem 400
 template <typename Values>
 [[nodiscard]] Values read(const Asked& asked) {
   Values values;
-  asked.question.read(parameters_of(values));
+  asked.question.read(rows_of(values));
   return values;
 }
-/// The same rows, to be described.
+/// The same rows, to be described: they point at values that are gone.
 template <typename Values>
 [[nodiscard]] ask::Parameters described() {
-  static Values values;
-  return parameters_of(values);
+  Values values;
+  return rows_of(values);
 }
 
 /// The format that `f` names, or else the one that the header Accept likes best (of several the one
@@ -77,11 +84,10 @@ template <typename Result>
   return certainty_json(asked, result.certified_error, result.certified_deviation, result.exact);
 }
 
-/// The fields of a row that the service tells.
-template <typename Row>
-[[nodiscard]] ask::Fields<Row> told(const ask::Fields<Row>& fields, ask::As as) {
-  return fields.told(ask::Door::kService, as);
-}
+/// What the service tells of a row as an object, as a line of a table, as a feature.
+constexpr Told kObject = Told::kService & Told::kObject,
+               kTableRow = Told::kService & Told::kTableRow,
+               kFeature = Told::kService & Told::kFeature;
 /// Rows as CSV.
 /// @param rows    How many there are.
 /// @param row_at  Makes one by its number.
@@ -89,7 +95,7 @@ template <typename Row, typename RowAt>
 [[nodiscard]] std::string csv_text(const Asked& asked, const ask::Fields<Row>& fields,
                                    std::size_t rows, const RowAt& row_at) {
   LongText text = long_text(asked);
-  ask::add_csv(text, told(fields, ask::As::kTableRow), rows, row_at);
+  ask::add_csv(text, fields.told(kTableRow), rows, row_at);
   return text.take();
 }
 /// Adds the members of an object, and ends the answer.
@@ -99,11 +105,11 @@ template <typename Row, typename RowAt>
 template <typename Row, typename RowAt>
 [[nodiscard]] std::string points_text(const Asked& asked, const ask::Fields<Row>& all,
                                       std::size_t rows, const RowAt& row_at, const Json& more) {
-  const ask::Fields<Row> fields = told(all, ask::As::kObject);
+  const ask::Fields<Row> fields = all.told(kObject);
   LongText text = long_text(asked);
   text.add("{\"points\":[");
   for (std::size_t i = 0; i < rows; ++i) {
-    ask::add_object(i == 0 ? text : text.add(","), fields, row_at(i));
+    ask::add_object(i == 0 ? text : text.add(","), fields, fields.values_of(row_at(i)));
   }
   return ended(text.add("]"), more);
 }
@@ -114,14 +120,14 @@ template <typename Row, typename RowAt, typename AddGeometry>
 [[nodiscard]] std::string features_text(const Asked& asked, const ask::Fields<Row>& all,
                                         std::size_t rows, const RowAt& row_at,
                                         const AddGeometry& add_geometry, const Json& more) {
-  const ask::Fields<Row> fields = told(all, ask::As::kFeature);
+  const ask::Fields<Row> fields = all.told(kFeature);
   LongText text = long_text(asked);
   text.add(R"({"type":"FeatureCollection","features":[)");
   for (std::size_t i = 0; i < rows; ++i) {
     text.add(i == 0 ? "" : ",\n").add(R"({"type":"Feature","geometry":)");
     add_geometry(text, i);
     text.add(",\"properties\":");
-    ask::add_object(text, fields, row_at(i));
+    ask::add_object(text, fields, fields.values_of(row_at(i)));
     text.add("}");
   }
   return ended(text.add("]"), more);
@@ -130,8 +136,8 @@ template <typename Row, typename RowAt, typename AddGeometry>
 void add_point(LongText& text, const MapPoint& p);
 void add_pair(LongText& text, const MapPoint& p);
 
-/// Positions of the client whose CRS is `crs`.
-[[nodiscard]] Places places_of(const Asked& asked, const std::string& crs);
+/// Positions of the client in the CRS that `crs` names.
+[[nodiscard]] Places places_of(const Asked& asked);
 
 /// @throws http::Problem 400  fewer vertices than the coarsest TIN has
 void check_detail(const Asked& asked, const DetailRequest& detail);

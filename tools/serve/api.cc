@@ -57,7 +57,7 @@ Json parameter_json(const ask::Parameter& row) {
 }
 
 /// The type of a field as documents say it: "number or null", "array of strings".
-Json schema_of(const ask::FieldFacts& facts) {
+Json schema_of(const ask::Field& facts) {
   const std::string type(facts.type.substr(0, facts.type.find(' ')));
   Json schema = {{"type", type}, {"description", facts.meaning}};
   if (!facts.unit.empty()) {
@@ -89,9 +89,9 @@ Json& place_of(Json& object, std::string_view name) {
   return point == std::string_view::npos ? *place : place_of(*place, name.substr(point + 1));
 }
 
-Json schema_of(std::span<const ask::FieldFacts> fields) {
+Json schema_of(std::span<const ask::Field> fields) {
   Json schema = {{"type", "object"}};
-  for (const ask::FieldFacts& facts : fields) place_of(schema, facts.name).update(schema_of(facts));
+  for (const ask::Field& facts : fields) place_of(schema, facts.name).update(schema_of(facts));
   return schema;
 }
 
@@ -107,8 +107,7 @@ Json answer_schema(const Endpoint& endpoint, std::string_view media) {
                   [](const ask::Format& format) { return format.media == kJson; });
   Json schema = {{"type", "object"}};
   if (!is_collection || !has_object) schema = schema_of(endpoint.members);
-  const Json certainty =
-      schema_of(documented(ask::answer_fields(), ask::Door::kService, ask::As::kObject));
+  const Json certainty = schema_of(ask::answer_fields().told(Told::kService & Told::kDocument));
   if (!is_collection) {
     schema["properties"].update(certainty["properties"]);
     return schema;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/stop.h"
-#include "tools/ask/locate.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/source_count.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
@@ -26,16 +26,14 @@ constexpr const char *kColumns = "resolution-x", *kRows = "resolution-y";
 
 struct AreaQuestion {
   LocateRequest request;
-  std::string coords, crs;
   std::optional<std::uint64_t> columns, rows;
   CoverageNames names;
 };
 
-ask::Parameters parameters_of(AreaQuestion& question) {
-  ask::Parameters rows;
-  rows.push_back(
-      ask::coords_row(question.coords, "The area as WKT, POLYGON or MULTIPOLYGON",
-                      "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))"));
+void add_question(ask::Parameters& rows, AreaQuestion& question) {
+  ask::add_question(rows, question.request);
+  rows.front().help = "The area as WKT, POLYGON or MULTIPOLYGON";
+  rows.front().example = "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))";
   rows.add(kColumns, &question.columns, "",
            "Positions along x, both ends included; 0: those of the terrain's samples; "
            "without it as many as make squares with those along y, or 65 along the "
@@ -43,10 +41,7 @@ ask::Parameters parameters_of(AreaQuestion& question) {
       .at(ask::Door::kService)
       .like("50");
   rows.add(kRows, &question.rows, "", "The same along y").at(ask::Door::kService).like("50");
-  ask::add_locate(rows, question.request);
-  rows.push_back(ask::crs_row(question.crs));
   add_coverage_rows(rows, question.names);
-  return rows;
 }
 
 constexpr double kStepsOfGrid = 64;
@@ -91,8 +86,8 @@ std::size_t corners_of(const Polygon& polygon) {
 }
 
 /// The polygon that `coords` holds. Across the antimeridian its longitudes go on beyond 180.
-Polygon polygon_of(const Asked& asked, const std::string& coords, const Places& places) {
-  Polygon polygon = polygon_of_wkt(coords, "coords");
+Polygon polygon_of(const Asked& asked, const Places& places) {
+  Polygon polygon = polygon_of_wkt(asked.question.text("coords"), "coords");
   check_count(corners_of(polygon), asked.options.question.points, "positions", "points", "coords");
   for (auto& ring : polygon.rings) places.go_on(ring, polygon.rings[0][0].x);
   return polygon;
@@ -252,8 +247,8 @@ ask::Parameters area_parameters() { return described<AreaQuestion>(); }
 http::Response answer_area(const Asked& asked) {
   const ask::Format& format = format_of(asked);
   auto question = read<AreaQuestion>(asked);
-  const Places places = places_of(asked, question.crs);
-  const Polygon polygon = polygon_of(asked, question.coords, places);
+  const Places places = places_of(asked);
+  const Polygon polygon = polygon_of(asked, places);
   const Grid grid = grid_of(asked, question, places, polygon);
   Inner inner = inner_of(asked, grid, polygon);
   std::vector<MapPoint> at = inner.at;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "tools/ask/locate.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/human.h"
 
 namespace ptin::serve {
@@ -24,16 +24,14 @@ constexpr std::array<std::string_view, 4> kNames = {"height", "height_min", "hei
 /// @throws Error invalid_argument  another name
 CoverageNames names_in(std::string_view given) {
   CoverageNames names;
-  while (!given.empty()) {
-    const std::size_t end = std::min(given.find(','), given.size());
-    const std::string_view name = ask::trimmed(given.substr(0, end));
+  for (const std::string_view part : ask::parts_of(given, ',')) {
+    const std::string_view name = ask::trimmed(part);
     const auto* const known = std::find(kNames.begin(), kNames.end(), name);
     if (known == kNames.end()) {
       refuse("\"" + tools::shown(name) +
              "\" is no parameter of this coverage; it has height, height_min, height_max, state");
     }
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(*known);
-    given.remove_prefix(std::min(end + 1, given.size()));
   }
   return names;
 }
@@ -146,10 +144,8 @@ void add_coverage_rows(ask::Parameters& rows, CoverageNames& names) {
           "without it. CoverageJSON holds these alone, other formats all")
       .at(ask::Door::kService)
       .like("height,state");
-  rows.push_back(
-      ask::ignored_row("datetime", "Accepted and without effect: a terrain has no time"));
-  rows.push_back(
-      ask::ignored_row("z", "Accepted and without effect: a surface has one height at a position"));
+  ask::add_text(rows, "datetime", "Accepted and without effect: a terrain has no time");
+  ask::add_text(rows, "z", "Accepted and without effect: a surface has one height at a position");
 }
 
 std::string coverage_text(const Asked& asked, const Places& places,

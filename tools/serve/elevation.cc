@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "engine/number.h"
-#include "tools/ask/locate.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/human.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
@@ -27,31 +27,26 @@ namespace {
 using http::Problem;
 
 struct ElevationQuestion {
-  std::string locations, path, nodata, format = "json";
+  std::string nodata, format = "json";
   std::optional<std::uint64_t> samples;
   std::optional<double> error;  ///< Metres.
 };
 
-ask::Parameters parameters_of(ElevationQuestion& question) {
+void add_question(ask::Parameters& rows, ElevationQuestion& question) {
   constexpr ask::Door kService = ask::Door::kService;
-  ask::Parameters rows;
-  rows.add("locations", &question.locations, "",
-           "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array "
-           "of [lat, lng] too")
-      .at(kService)
-      .as_json()
-      .like("34.34,-118.3|34.35,-118.29");
-  rows.add("path", &question.path, "",
-           "Positions instead of locations; with samples, positions along it")
-      .at(kService)
+  ask::add_text(rows, "locations",
+                "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array "
+                "of [lat, lng] too",
+                "34.34,-118.3|34.35,-118.29")
+      .as_json();
+  ask::add_text(rows, "path", "Positions instead of locations; with samples, positions along it")
       .as_json();
   rows.add("samples", &question.samples, "",
            "Positions at equal distances along the path or the locations, by the "
            "shortest way over ground")
       .at(kService)
       .like("10");
-  rows.push_back(ask::ignored_row("interpolation", "Accepted and without effect: a TIN is linear",
-                                  "bilinear"));
+  ask::add_text(rows, "interpolation", "Accepted and without effect: a TIN is linear", "bilinear");
   rows.add("nodata_value", &question.nodata, "",
            "What stands for no elevation: null, nan or a whole number")
       .at(kService)
@@ -63,14 +58,13 @@ ask::Parameters parameters_of(ElevationQuestion& question) {
   // What others' clients, and libraries below them, put into every request.
   for (const char* name : {"key", "client", "signature", "channel", "solution_channel", "sensor",
                            "language", "region", "units", "_"}) {
-    rows.push_back(ask::ignored_row(name, "Accepted and without effect"));
+    ask::add_text(rows, name, "Accepted and without effect");
   }
   rows.add("error", &question.error, "",
            "Certified error allowed, in metres; without it: full detail")
       .within(ask::kNotNegative)
       .at(kService)
       .like("5");
-  return rows;
 }
 
 std::optional<double> finite_in(std::string_view text) {
@@ -116,10 +110,8 @@ std::vector<MapPoint> places_of(std::string_view text) {
   if (text.starts_with("enc:")) return decode_polyline(text.substr(4));
   if (text.find(',') == std::string_view::npos) return decode_polyline(text);
   std::vector<MapPoint> places;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('|'), text.size());
-    if (end > 0) places.push_back(place_of(text.substr(0, end)));
-    text.remove_prefix(std::min(end + 1, text.size()));
+  for (const std::string_view part : ask::parts_of(text, '|')) {
+    if (!part.empty()) places.push_back(place_of(part));
   }
   return places;
 }
@@ -243,9 +235,9 @@ Json result_json(const Elevations& found, const ask::Fields<ask::LocatedRow>& fi
   Json result = {{"elevation", nodata},
                  {"location", {{"lat", lon_lat[i].y}, {"lng", lon_lat[i].x}}},
                  {"dataset", found.dataset[i]}};
-  for (const ask::Field<ask::LocatedRow>& field : fields) {
-    std::string name = field.facts.name;
-    Json value = field.value(row);
+  for (const ask::Field& field : fields) {
+    std::string name = field.name;
+    Json value = field.value(&row);
     if (name.starts_with(kHeight)) {
       name.replace(0, kHeight.size(), kElevation);
       if (row.point.state == PointState::kSurface) {
@@ -279,7 +271,7 @@ http::Response answer_elevation(const Asked& asked) {
   const std::vector<MapPoint> lon_lat = asked_places(asked, question);
   const Json nodata = nodata_of(question.nodata);
   const Elevations found = elevations_of(asked, lon_lat, question.error);
-  const auto fields = told(ask::located_fields(), ask::As::kFeature);
+  const auto fields = ask::located_fields().told(kFeature);
   Json results = Json::array();
   for (std::size_t i = 0; i < lon_lat.size(); ++i) {
     Json result = result_json(found, fields, lon_lat, i, nodata);

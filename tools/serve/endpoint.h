@@ -56,7 +56,7 @@ struct Endpoint {
   void (*refusal)(http::Response& refusal) = nullptr;
   /// What its answers tell: the members of an object of JSON, or, where none is offered, of a
   /// collection of GeoJSON; and the properties of features.
-  std::vector<ask::FieldFacts> members{}, properties{};
+  std::vector<ask::Field> members{}, properties{};
 };
 
 /// Every question, in the order of the documentation.

@@ -3,12 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ask/highest.h"
-#include "tools/ask/isolines.h"
-#include "tools/ask/locate.h"
-#include "tools/ask/profile.h"
-#include "tools/ask/sight.h"
-#include "tools/ask/viewshed.h"
+#include "tools/ask/questions.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/endpoint.h"
 #include "tools/serve/questions.h"
@@ -44,36 +39,37 @@ constexpr std::array kContentMedia{ask::Format{"", "model/gltf-binary"}};
 constexpr std::array kFileMedia{ask::Format{"", "application/vnd.ptin"}};
 constexpr std::array kElevationMedia{ask::Format{"", kJson}, ask::Format{"", kGeoJson}};
 
-/// Has an endpoint tell the fields of its answers. Positions, and the rest of their rows, stand in the
-/// array `rows` of an object.
+/// Has an endpoint tell the fields of its answers: those of an object, or of a feature.
+/// @param rows  The array of an object in which they stand, as "points[]."; empty: in none.
 template <typename Row>
 void add_fields(std::vector<Endpoint>& all, std::string_view name, const ask::Fields<Row>& fields,
-                const std::string& rows, ask::As as) {
+                Told form, const std::string& rows = {}) {
   for (Endpoint& endpoint : all) {
     if (endpoint.name != name) continue;
-    auto& told = as == ask::As::kObject ? endpoint.members : endpoint.properties;
-    for (ask::FieldFacts& facts : documented(fields, ask::Door::kService, as, rows)) {
-      told.push_back(std::move(facts));
+    auto& told = form == Told::kFeature ? endpoint.properties : endpoint.members;
+    for (ask::Field& field : fields.told(Told::kService & form)) {
+      field.name.insert(0, rows);
+      told.push_back(std::move(field));
     }
   }
 }
 
 void add_all_fields(std::vector<Endpoint>& all) {
-  using ask::As;
   for (const char* name : {"position", "area"}) {
-    add_fields(all, name, ask::located_fields(), {}, As::kFeature);
+    add_fields(all, name, ask::located_fields(), Told::kFeature);
   }
-  add_fields(all, "position", ask::located_fields(), "points[].", As::kObject);
-  add_fields(all, "trajectory", ask::profile_line_fields(), {}, As::kFeature);
-  add_fields(all, "profile", ask::profile_line_fields(), {}, As::kFeature);
-  add_fields(all, "profile", ask::profile_fields(), "points[].", As::kObject);
-  add_fields(all, "profile", ask::profile_answer_fields(), {}, As::kObject);
-  add_fields(all, "sight", ask::sight_fields(), "pairs[].", As::kObject);
-  add_fields(all, "isolines", ask::isoline_row_fields(), {}, As::kFeature);
-  add_fields(all, "highest", ask::highest_place_fields(), {}, As::kFeature);
-  add_fields(all, "highest", ask::highest_fields(), {}, As::kObject);
-  add_fields(all, "viewshed", ask::target_fields(), {}, As::kFeature);
-  add_fields(all, "viewshed", ask::viewshed_fields(), {}, As::kObject);
+  for (const char* name : {"trajectory", "profile"}) {
+    add_fields(all, name, ask::profile_line_fields(), Told::kFeature);
+  }
+  add_fields(all, "position", ask::located_fields(), Told::kDocument, "points[].");
+  add_fields(all, "profile", ask::profile_fields(), Told::kDocument, "points[].");
+  add_fields(all, "profile", ask::profile_answer_fields(), Told::kDocument);
+  add_fields(all, "sight", ask::sight_fields(), Told::kDocument, "pairs[].");
+  add_fields(all, "isolines", ask::isoline_row_fields(), Told::kFeature);
+  add_fields(all, "highest", ask::highest_place_fields(), Told::kFeature);
+  add_fields(all, "highest", ask::highest_fields(), Told::kDocument);
+  add_fields(all, "viewshed", ask::target_fields(), Told::kFeature);
+  add_fields(all, "viewshed", ask::viewshed_fields(), Told::kDocument);
 }
 
 /// The parameters stand in other files.
@@ -101,16 +97,19 @@ std::vector<Endpoint> made_table() {
       {"/collections/{id}/mesh", "mesh", false, "A mesh of a window", mesh_parameters(),
        kMeshFormats, Lane::kSweep, Reserves::kAll, answer_mesh},
       {"/collections/{id}/isolines", "isolines", false, "Isolines of a window",
-       isolines_parameters(), kFeatureFormats, Lane::kSweep, Reserves::kAll, answer_isolines},
+       described<ask::IsolineQuestion>(), kFeatureFormats, Lane::kSweep, Reserves::kAll,
+       answer_isolines},
       {"/collections/{id}/highest", "highest", false, "The highest or lowest point of a window",
-       highest_parameters(), kFeatureFormats, Lane::kTile, Reserves::kQuarter, answer_highest},
+       described<ask::HighestQuestion>(), kFeatureFormats, Lane::kTile, Reserves::kQuarter,
+       answer_highest},
       {"/collections/{id}/viewshed", "viewshed", false, "What an observer sees",
-       viewshed_parameters(), kViewshedFormats, Lane::kSweep, Reserves::kAll, answer_viewshed},
+       described<ask::ViewshedQuestion>(), kViewshedFormats, Lane::kSweep, Reserves::kAll,
+       answer_viewshed},
       {"/collections/{id}/profile", "profile", true,
-       "The height along lines, with a break at every edge of the TIN", profile_parameters(),
+       "The height along lines, with a break at every edge of the TIN", described<ProfileRequest>(),
        kProfileFormats, Lane::kTile, Reserves::kQuarter, answer_profile},
       {"/collections/{id}/sight", "sight", true, "Lines of sight, visible or hidden",
-       sight_parameters(), kPageFormats, Lane::kSweep, Reserves::kAll, answer_sight},
+       described<ask::SightQuestion>(), kPageFormats, Lane::kSweep, Reserves::kAll, answer_sight},
       {"/collections/{id}/stream", "stream", true,
        "Progressive transmission: what matters most, then what a client lacks", stream_parameters(),
        kStreamMedia, Lane::kSweep, Reserves::kAll, answer_stream},
@@ -130,10 +129,10 @@ std::vector<Endpoint> made_table() {
        elevation_parameters(), kElevationMedia, Lane::kPoint, Reserves::kQuarter, answer_elevation,
        refuse_elevation},
   };
-  static std::string unread;
+  std::string unread;
   for (Endpoint& endpoint : all) {
     if (endpoint.formats.front().name.empty()) continue;
-    endpoint.parameters.push_back(ask::format_row(unread, endpoint.formats));
+    ask::add_format(endpoint.parameters, unread, endpoint.formats);
   }
   add_all_fields(all);
   return all;

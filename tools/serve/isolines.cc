@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Isolines of a window, as GeoJSON.
-#include "tools/ask/isolines.h"
-
 #include <array>
 #include <string>
 #include <vector>
 
+#include "tools/ask/questions.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
@@ -18,17 +17,6 @@ namespace {
 using http::Problem;
 
 constexpr std::size_t kMostAnswered = 1000;  // Levels of one question.
-
-struct ContourQuestion : ask::IsolineQuestion {
-  std::string crs;
-};
-
-ask::Parameters parameters_of(ContourQuestion& question) {
-  ask::Parameters rows;
-  ask::add_isolines(rows, question);
-  rows.push_back(ask::crs_row(question.crs));
-  return rows;
-}
 
 [[noreturn]] void throw_many_levels(const char* parameter) {
   throw Problem(413, "more than " + std::to_string(kMostAnswered) +
@@ -72,12 +60,10 @@ std::string text_of(const Asked& asked, const Isolines& lines, const Places& pla
 
 }  // namespace
 
-ask::Parameters isolines_parameters() { return described<ContourQuestion>(); }
-
 http::Response answer_isolines(const Asked& asked) {
   const ask::Format& format = format_of(asked);
-  auto question = read<ContourQuestion>(asked);
-  const Places places = places_of(asked, question.crs);
+  auto question = read<ask::IsolineQuestion>(asked);
+  const Places places = places_of(asked);
   IsolineRequest& request = question.request;
   request.levels = levels_of(asked, question.levels);
   check_detail(asked, request.detail);

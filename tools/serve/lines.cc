@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "tools/ask/profile.h"
+#include "tools/ask/questions.h"
 #include "tools/http/problem.h"
 #include "tools/region/straight_sides.h"
 #include "tools/serve/wkt_places.h"
@@ -27,9 +27,8 @@ struct LinesThere {
 };
 
 /// The lines of `coords`.
-LinesThere lines_of(const Asked& asked, const std::string& coords, const Places& places,
-                    const tools::SideTarget& sides) {
-  Lines lines = lines_of_wkt(coords, "coords");
+LinesThere lines_of(const Asked& asked, const Places& places, const tools::SideTarget& sides) {
+  Lines lines = lines_of_wkt(asked.question.text("coords"), "coords");
   std::size_t positions = 0;
   for (const std::vector<MapPoint>& line : lines) positions += line.size();
   check_count(positions, asked.options.question.points, "positions", "points", "coords");
@@ -82,21 +81,11 @@ void check_stations(const Asked& asked, double step, double length) {
 
 }  // namespace
 
-ask::Parameters parameters_of(LinesQuestion& question) {
-  ask::Parameters rows;
-  rows.push_back(ask::coords_row(question.coords, "Lines as WKT, LINESTRING or MULTILINESTRING",
-                                 "LINESTRING(-118.3 34.34, -118.29 34.35)"));
-  ask::add_profile(rows, question.request);
-  rows.push_back(ask::crs_row(question.crs));
-  return rows;
-}
-
-AlongLines walk_lines(const Asked& asked, const LinesQuestion& question, const Places& places) {
+AlongLines walk_lines(const Asked& asked, ProfileRequest request, const Places& places) {
   const Collection& collection = *asked.collection;
   tools::SideTarget sides = tools::side_target(asked.terrain().store().facts(), 0.0);
   sides.most_points = asked.options.question.vertices;
-  const LinesThere there = lines_of(asked, question.coords, places, sides);
-  ProfileRequest request = question.request;
+  const LinesThere there = lines_of(asked, places, sides);
   ask::set_ground(request, collection.ground);
   const double length = length_of(there, request);
   if (length == 0) throw http::Problem(400, "no line has a length").at("coords");

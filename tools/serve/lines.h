@@ -20,18 +20,11 @@ struct AlongLines {
   double bent_at_most = 0.0;
 };
 
-/// A question about lines.
-struct LinesQuestion {
-  ProfileRequest request;
-  std::string coords, crs;
-};
-[[nodiscard]] ask::Parameters parameters_of(LinesQuestion& question);
-
-/// Walks the lines.
+/// Walks the lines of `coords`.
 /// @throws http::Problem 400  no line has a length
 ///                       413  more positions than a question may name; more stations or points of
 ///                            the profile than an answer may have
-[[nodiscard]] AlongLines walk_lines(const Asked& asked, const LinesQuestion& question,
+[[nodiscard]] AlongLines walk_lines(const Asked& asked, ProfileRequest request,
                                     const Places& places);
 
 }  // namespace ptin::serve

@@ -22,19 +22,16 @@ namespace {
 struct MeshQuestion {
   RefineRequest request;
   ask::RegionText region;
-  std::string crs;
 };
 
-ask::Parameters parameters_of(MeshQuestion& question) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, MeshQuestion& question) {
   ask::add_region(rows, question.region, ask::RegionKinds::kWindow, ask::Door::kService);
   ask::add_detail(
       rows, question.request.detail, "",
       "A mesh of so many vertices, the most important ones of the window, instead of an "
       "error",
       ask::Door::kService);
-  rows.push_back(ask::crs_row(question.crs));
-  return rows;
+  ask::add_crs(rows);
 }
 
 /// The file in memory, within what is left of the question's.
@@ -72,7 +69,7 @@ ask::Parameters mesh_parameters() { return described<MeshQuestion>(); }
 http::Response answer_mesh(const Asked& asked) {
   const ask::Format& format = format_of(asked);
   auto question = read<MeshQuestion>(asked);
-  const Places places = places_of(asked, question.crs);
+  const Places places = places_of(asked);
   RefineRequest& request = question.request;
   check_detail(asked, request.detail);
   const std::size_t most = asked.options.question.vertices;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ask/locate.h"
+#include "tools/ask/questions.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
 #include "tools/serve/questions.h"
@@ -16,18 +16,12 @@ namespace {
 
 struct PositionQuestion {
   LocateRequest request;
-  std::string coords, crs;
   CoverageNames names;
 };
 
-ask::Parameters parameters_of(PositionQuestion& q) {
-  ask::Parameters rows;
-  rows.push_back(
-      ask::coords_row(q.coords, "Positions as WKT, POINT or MULTIPOINT", "POINT(-118.3 34.34)"));
-  ask::add_locate(rows, q.request);
-  rows.push_back(ask::crs_row(q.crs));
-  add_coverage_rows(rows, q.names);
-  return rows;
+void add_question(ask::Parameters& rows, PositionQuestion& question) {
+  ask::add_question(rows, question.request);
+  add_coverage_rows(rows, question.names);
 }
 
 /// The same with the triangles, in the CRS of the client, for a program that shows them.
@@ -49,8 +43,8 @@ ask::Parameters position_parameters() { return described<PositionQuestion>(); }
 http::Response answer_position(const Asked& asked) {
   const ask::Format& format = format_of(asked);
   auto question = read<PositionQuestion>(asked);
-  const Places places = places_of(asked, question.crs);
-  const std::vector<MapPoint> client = points_of_wkt(question.coords, "coords");
+  const Places places = places_of(asked);
+  const std::vector<MapPoint> client = points_of_wkt(asked.question.text("coords"), "coords");
   check_count(client.size(), asked.options.question.points, "positions", "points", "coords");
   std::vector<MapPoint> at = client;
   places.to_terrain(at);

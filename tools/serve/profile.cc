@@ -2,12 +2,11 @@
 //
 // The height along lines, with a break at every edge of the TIN: `profile`, and OGC EDR's
 // `trajectory`, which is the same as a coverage.
-#include "tools/ask/profile.h"
-
 #include <span>
 #include <string>
 #include <vector>
 
+#include "tools/ask/questions.h"
 #include "tools/facts/answers.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
@@ -18,21 +17,21 @@ namespace ptin::serve {
 
 namespace {
 
-struct TrajectoryQuestion : LinesQuestion {
+struct TrajectoryQuestion {
+  ProfileRequest request;
   CoverageNames names;
 };
 
-ask::Parameters parameters_of(TrajectoryQuestion& question) {
-  ask::Parameters rows = parameters_of(static_cast<LinesQuestion&>(question));
+void add_question(ask::Parameters& rows, TrajectoryQuestion& question) {
+  ask::add_question(rows, question.request);
   add_coverage_rows(rows, question.names);
-  return rows;
 }
 
 /// What is told of the profile as a whole.
 Json facts_of(const AlongLines& along, const Asked& asked) {
   Json facts = certainty_of(asked, along.profile);
-  put(facts, told(ask::profile_answer_fields(), ask::As::kObject),
-      ask::ProfileAnswer{along.profile, asked.collection->crs, nullptr, along.bent_at_most});
+  facts.update(ask::profile_answer_fields().told(kObject).object_of(
+      {along.profile, asked.collection->crs, nullptr, along.bent_at_most}));
   return facts;
 }
 
@@ -87,11 +86,11 @@ std::string coverage_of(const AlongLines& along, const Asked& asked, const Place
                        certainty_of(along, asked));
 }
 
-http::Response respond(const Asked& asked, const LinesQuestion& question,
+http::Response respond(const Asked& asked, const ProfileRequest& request,
                        const CoverageNames& names) {
   const ask::Format& format = format_of(asked);
-  const Places places = places_of(asked, question.crs);
-  const AlongLines along = walk_lines(asked, question, places);
+  const Places places = places_of(asked);
+  const AlongLines along = walk_lines(asked, request, places);
   const auto row_at = [&](std::size_t i) {
     return ask::ProfileRow{along.profile.points[i], along.client[i],
                            along.profile.certified_deviation};
@@ -113,16 +112,15 @@ http::Response respond(const Asked& asked, const LinesQuestion& question,
 
 }  // namespace
 
-ask::Parameters profile_parameters() { return described<LinesQuestion>(); }
 ask::Parameters trajectory_parameters() { return described<TrajectoryQuestion>(); }
 
 http::Response answer_profile(const Asked& asked) {
-  return respond(asked, read<LinesQuestion>(asked), {});
+  return respond(asked, read<ProfileRequest>(asked), {});
 }
 
 http::Response answer_trajectory(const Asked& asked) {
   const auto question = read<TrajectoryQuestion>(asked);
-  return respond(asked, question, question.names);
+  return respond(asked, question.request, question.names);
 }
 
 }  // namespace ptin::serve

@@ -30,13 +30,8 @@ std::vector<std::string> values_of(const ask::Parameter& row, std::string_view t
   if (!ask::is_list(row)) return {std::string(text)};
   text = ask::trimmed(text);
   if (text.starts_with('[') && text.ends_with(']')) text = text.substr(1, text.size() - 2);
-  std::vector<std::string> values;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(','), text.size());
-    values.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return values;
+  const std::vector<std::string_view> parts = ask::parts_of(text, ',');
+  return {parts.begin(), parts.end()};
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/ask/parameter.h"
 #include "engine/query/questions.h"
+#include "tools/ask/parameter.h"
 #include "tools/http/request.h"
 #include "tools/serve/client_json.h"
 

@@ -33,11 +33,6 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters area_parameters();
 [[nodiscard]] ask::Parameters elevation_parameters();
 [[nodiscard]] ask::Parameters mesh_parameters();
-[[nodiscard]] ask::Parameters isolines_parameters();
-[[nodiscard]] ask::Parameters highest_parameters();
-[[nodiscard]] ask::Parameters viewshed_parameters();
-[[nodiscard]] ask::Parameters profile_parameters();
-[[nodiscard]] ask::Parameters sight_parameters();
 [[nodiscard]] ask::Parameters stream_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Lines of sight: one pair, or a thousand.
-#include "tools/ask/sight.h"
-
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tools/ask/questions.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
@@ -20,36 +19,10 @@ namespace {
 
 using http::Problem;
 
-struct LinesOfSight : ask::SightQuestion {
-  std::string coords, crs;
-  std::vector<double> heights{2.0, 2.0};
-};
-
-ask::Parameters parameters_of(LinesOfSight& question) {
-  ask::Parameters rows;
-  rows.push_back(ask::coords_row(
-      question.coords,
-      "The two ends as WKT, LINESTRING of two positions, or a MULTILINESTRING of several pairs",
-      "LINESTRING(-118.3 34.34, -118.29 34.35)"));
-  rows.back().required = ask::Door::kNone;
-  rows.push_back(
-      ask::ignored_row("pairs", "Pairs instead of coords: [x, y, height, x, y, height] each"));
-  rows.back().excludes = "coords";
-  rows.back().is_json = true;
-  rows.add("heights", &question.heights, "", "Heights of the two ends of coords; 2,2 without it")
-      .in(ask::Unit::kHeight)
-      .values(2, 2)
-      .at(ask::Door::kService)
-      .like("2,10");
-  ask::add_sight(rows, question);
-  rows.push_back(ask::crs_row(question.crs));
-  return rows;
-}
-
-std::vector<SightPair> pairs_of_coords(const LinesOfSight& question) {
-  const std::vector<double>& heights = question.heights;
+std::vector<SightPair> pairs_of_coords(const Question& question,
+                                       const std::vector<double>& heights) {
   std::vector<SightPair> pairs;
-  for (const std::vector<MapPoint>& line : lines_of_wkt(question.coords, "coords")) {
+  for (const std::vector<MapPoint>& line : lines_of_wkt(question.text("coords"), "coords")) {
     if (line.size() != 2) throw Problem(400, "a line of sight has two positions").at("coords");
     pairs.push_back({line[0], heights[0], line[1], heights[1]});
   }
@@ -80,7 +53,7 @@ std::vector<SightPair> pairs_of_json(const Question& question, std::size_t most)
   return pairs;
 }
 
-std::vector<SightPair> pairs_of(const Asked& asked, const LinesOfSight& question,
+std::vector<SightPair> pairs_of(const Asked& asked, const ask::SightQuestion& question,
                                 const Places& places) {
   const Question& q = asked.question;
   if (!q.has("coords") && !q.has("pairs")) {
@@ -88,7 +61,7 @@ std::vector<SightPair> pairs_of(const Asked& asked, const LinesOfSight& question
   }
   const std::size_t most = asked.options.question.pairs;
   std::vector<SightPair> pairs =
-      q.has("pairs") ? pairs_of_json(q, most) : pairs_of_coords(question);
+      q.has("pairs") ? pairs_of_json(q, most) : pairs_of_coords(q, question.end_heights);
   check_count(pairs.size(), most, "pairs", "pairs", "coords");
   const char* parameter = q.has("pairs") ? "pairs" : "coords";
   tools::SideTarget ends_alone;  // A line of sight is straight in the terrain's CRS.
@@ -117,12 +90,10 @@ double certified_error_of(const Asked& asked, const DetailRequest& detail) {
 
 }  // namespace
 
-ask::Parameters sight_parameters() { return described<LinesOfSight>(); }
-
 http::Response answer_sight(const Asked& asked) {
   const ask::Format& format = format_of(asked);
-  auto question = read<LinesOfSight>(asked);
-  const Places places = places_of(asked, question.crs);
+  auto question = read<ask::SightQuestion>(asked);
+  const Places places = places_of(asked);
   const std::vector<SightPair> pairs = pairs_of(asked, question, places);
   check_detail(asked, question.request.detail);
   ask::set_ground(question, asked.collection->ground);
@@ -131,7 +102,7 @@ http::Response answer_sight(const Asked& asked) {
       asked.terrain().sight_lines(question.request, ask::coarse_records_for(pairs.size()));
   QueryCost cost = solver.base_cost();
   const auto to_client = [&](std::span<MapPoint> at) { places.from_terrain(at); };
-  const auto fields = told(ask::sight_fields(), ask::As::kObject);
+  const auto fields = ask::sight_fields().told(kObject);
   Json results = Json::array();
   bool is_exact = true;
   double deviation = 0.0;
@@ -141,7 +112,7 @@ http::Response answer_sight(const Asked& asked) {
     cost.seconds += result.cost.seconds;
     is_exact = is_exact && result.exact;
     deviation = std::max(deviation, result.certified_deviation);
-    results.push_back(object_of(fields, ask::SightRow(result, to_client)));
+    results.push_back(fields.object_of(ask::SightRow(result, to_client)));
   }
   const double error = certified_error_of(asked, question.request.detail);
   Json json = certainty_json(asked, error, deviation, is_exact);

@@ -23,28 +23,24 @@ struct PieceQuestion {
   std::optional<std::uint64_t> max_bytes;
 };
 
-ask::Parameters parameters_of(PieceQuestion& question) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, PieceQuestion& question) {
   rows.add("window", &question.wanted.window, "",
            "What the client looks at: xmin, ymin, xmax, ymax")
       .in(ask::Unit::kMap)
       .values(4, 4)
       .at(ask::Door::kService)
       .like("380000,3802000,382000,3804000");
-  rows.push_back(
-      ask::error_row(question.wanted.error, "Certified error allowed; without it full detail"));
+  ask::add_error(rows, question.wanted.error, "Certified error allowed; without it full detail");
   rows.add("max_bytes", &question.max_bytes, "",
            "Most bytes of the answer, which ends on a frame; 256 KiB without it")
       .at(ask::Door::kService)
       .like("100000");
-  rows.push_back(ask::ignored_row("have",
-                                  "What the client was served before, in that order: objects with "
-                                  "window, error, splits",
-                                  "[{\"error\":50,\"splits\":3000}]"));
-  rows.back().is_json = true;
-  rows.push_back(
-      ask::ignored_row("fingerprint", "Fingerprint of the collection from which it was served"));
-  return rows;
+  ask::add_text(
+      rows, "have",
+      "What the client was served before, in that order: objects with window, error, splits",
+      "[{\"error\":50,\"splits\":3000}]")
+      .as_json();
+  ask::add_text(rows, "fingerprint", "Fingerprint of the collection from which it was served");
 }
 
 std::vector<tools::Serving> held_servings(const Asked& asked) {

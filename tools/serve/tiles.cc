@@ -83,11 +83,12 @@ http::Response layer_json(const Asked& asked) {
 }  // namespace
 
 ask::Parameters tiles_parameters() {
-  return {
-      ask::ignored_row("v",
-                       "The version that layer.json tells: such an answer may be kept for ever"),
-      ask::ignored_row("extensions", "octvertexnormals, where the header Accept does not say so",
-                       "octvertexnormals")};
+  ask::Parameters rows;
+  ask::add_text(rows, "v",
+                "The version that layer.json tells: such an answer may be kept for ever");
+  ask::add_text(rows, "extensions", "octvertexnormals, where the header Accept does not say so",
+                "octvertexnormals");
+  return rows;
 }
 
 http::Response answer_tiles(const Asked& asked) {

@@ -52,11 +52,12 @@ http::Response response_of(const SentFile& sent, const http::Request& request) {
 
 /// What the page reads of its own address; the files are the same whatever it says.
 ask::Parameters viewer_parameters() {
-  return {
-      ask::ignored_row("collection", "The terrain that the page opens", "m"),
-      ask::ignored_row("stream", "The address of a stream, instead of a collection"),
-      ask::ignored_row("service", "The service that has the collection, where it is another one"),
-      ask::ignored_row("vertices", "So many vertices are shown at most", "400000")};
+  ask::Parameters rows;
+  ask::add_text(rows, "collection", "The terrain that the page opens", "m");
+  ask::add_text(rows, "stream", "The address of a stream, instead of a collection");
+  ask::add_text(rows, "service", "The service that has the collection, where it is another one");
+  ask::add_text(rows, "vertices", "So many vertices are shown at most", "400000");
+  return rows;
 }
 
 http::Response answer_viewer(const Asked& asked) {

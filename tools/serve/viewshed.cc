@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What one observer sees, as a picture or as GeoJSON.
-#include "tools/ask/viewshed.h"
-
 #include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "engine/error.h"
+#include "tools/ask/questions.h"
 #include "tools/http/problem.h"
 #include "tools/plot/png.h"
 #include "tools/serve/answer_parts.h"
@@ -20,22 +19,9 @@ namespace ptin::serve {
 
 namespace {
 
-struct ObserverQuestion : ask::ViewshedQuestion {
-  std::string coords, crs;
-};
-
-ask::Parameters parameters_of(ObserverQuestion& question) {
-  ask::Parameters rows;
-  rows.push_back(ask::coords_row(question.coords, "The observer's position as WKT, POINT",
-                                 "POINT(-118.3 34.34)"));
-  ask::add_viewshed(rows, question);
-  rows.push_back(ask::crs_row(question.crs));
-  return rows;
-}
-
-ViewshedRequest request_of(const Asked& asked, const ObserverQuestion& question,
+ViewshedRequest request_of(const Asked& asked, const ask::ViewshedQuestion& question,
                            const Places& places, bool as_picture) {
-  const std::vector<MapPoint> eye = points_of_wkt(question.coords, "coords");
+  const std::vector<MapPoint> eye = points_of_wkt(asked.question.text("coords"), "coords");
   if (eye.size() != 1) throw http::Problem(400, "one observer has one position").at("coords");
   ViewshedRequest request = question.request;
   request.eye = places.to_terrain(eye[0]);
@@ -91,7 +77,7 @@ std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& p
     places.from_terrain({&p, 1});
     add_point(text, p);
   };
-  Json more = object_of(told(ask::viewshed_fields(), ask::As::kObject), ask::ViewshedAnswer{&seen});
+  Json more = ask::viewshed_fields().told(kObject).object_of({&seen});
   more["ptin:certainty"] = certainty_of(asked, seen);
   return features_text(
       asked, ask::target_fields(), seen.vertices.size(),
@@ -115,13 +101,11 @@ void check_pixels(const Asked& asked, const ViewshedRequest& request) {
 
 }  // namespace
 
-ask::Parameters viewshed_parameters() { return described<ObserverQuestion>(); }
-
 http::Response answer_viewshed(const Asked& asked) {
   const ask::Format& format = format_of(asked);
   const bool as_picture = format.name == "png";
-  const auto question = read<ObserverQuestion>(asked);
-  const Places places = places_of(asked, question.crs);
+  const auto question = read<ask::ViewshedQuestion>(asked);
+  const Places places = places_of(asked);
   const ViewshedRequest request = request_of(asked, question, places, as_picture);
   if (as_picture) check_pixels(asked, request);
   const Viewshed seen = viewshed_of(asked, request);
