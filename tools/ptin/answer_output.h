@@ -48,7 +48,7 @@ void write_layer(const OutputOptions& out, VectorFile::Layer layer, const ask::F
   VectorFile file(out.output, out.overwrite, layer);
   for (std::size_t i = 0; i < rows; ++i) {
     const Row& row = row_at(i);
-    file.add(geometry_at(i), ask::layer_values_of(fields, row));
+    file.add(geometry_at(i), ask::layer_values_of(fields.values_of(row)));
   }
   file.publish();
 }
@@ -59,6 +59,29 @@ template <typename Row, typename RowAt>
   ask::LongText text;
   ask::add_csv(text, fields, rows, row_at);
   return text.take();
+}
+/// Writes rows as a layer or as CSV, where the form asks for one; with `json` stdout is taken.
+/// @param fields  All; the form chooses those of it.
+template <typename Row, typename RowAt, typename GeometryAt>
+void write_rows(const OutputOptions& out, AnswerForm form, bool json, VectorFile::Layer layer,
+                const ask::Fields<Row>& fields, std::size_t rows, const RowAt& row_at,
+                const GeometryAt& geometry_at) {
+  if (form == AnswerForm::kLayer) {
+    write_layer(out, std::move(layer), fields.told(ask::Told::kProgram & ask::Told::kFeature), rows,
+                row_at, geometry_at);
+  } else if (form == AnswerForm::kCsv || !json) {
+    write_csv(out, form, json,
+              table_of(fields.told(ask::Told::kProgram & ask::Told::kTableRow), rows, row_at));
+  }
+}
+/// Rows as objects.
+template <typename Row, typename RowAt>
+[[nodiscard]] ask::Json objects_of(const ask::Fields<Row>& all, std::size_t rows,
+                                   const RowAt& row_at) {
+  const auto fields = all.told(ask::Told::kProgram & ask::Told::kObject);
+  ask::Json objects = ask::Json::array();
+  for (std::size_t i = 0; i < rows; ++i) objects.push_back(fields.object_of(row_at(i)));
+  return objects;
 }
 
 /// The name in JSON: null on stdout.

@@ -92,11 +92,10 @@ Declared declare_bench(Context& context) {
       .within({.least = 1, .most = 1e6})
       .with_default();
   rows.add("seed", &request.seed, "N", "Of the places that are asked for").with_default();
-  rows.push_back(ask::error_row(request.tolerance, "Ask at a certified error; without it exact"));
-  rows.push_back(ask::threads_row(
-      options->threads, "Most threads to ask at once (default: those that the process may use)",
-      4096));
-  rows.push_back(ask::memory_row(options->memory));
+  ask::add_error(rows, request.tolerance, "Ask at a certified error; without it exact");
+  ask::add_threads(rows, options->threads,
+                   "Most threads to ask at once (default: those that the process may use)", 4096);
+  ask::add_memory(rows, options->memory);
   rows.add("tmp", &request.temporary_folder, "DIR",
            "Folder for libspatialindex's tree, which is removed again (default: beside "
            "FILE)");

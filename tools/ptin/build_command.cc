@@ -82,10 +82,10 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
   rows.add("memory", &command.memory, "SIZE",
            "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
            "where a cgroup or a resource limit allows less)");
-  rows.push_back(ask::threads_row(
-      command.threads,
+  ask::add_threads(
+      rows, command.threads,
       "Threads (default: one a processor that affinity and cgroups leave this process);\n"
-      "fewer are used where memory is short. The output is the same for any number"));
+      "fewer are used where memory is short. The output is the same for any number");
   rows.add(
       "tmp",
       [&command](const std::string& folder) {

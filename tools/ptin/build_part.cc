@@ -103,8 +103,7 @@ ask::Parameters parameters_of(PartCommand& command) {
       .within({.least = 0, .most = 1 << 20});
   rows.add("memory", &command.memory, "SIZE",
            "Limit on the memory of this job (default: that of the plan)");
-  rows.push_back(
-      ask::threads_row(command.threads, "Threads of this job (default: one a processor)"));
+  ask::add_threads(rows, command.threads, "Threads of this job (default: one a processor)");
   return rows;
 }
 

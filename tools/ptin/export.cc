@@ -343,8 +343,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const ExportFormat& format = format_of(options);
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.detail.tolerance, context);
+  const Terrain terrain = open_terrain(options.terrain, options.detail.tolerance, context);
   Exported made = export_as(format, options, terrain, context);
   made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (context.json) {
@@ -379,7 +378,7 @@ ask::Parameters parameters_of(ExportOptions& options) {
   rows.add("co", &options.creation_options, "KEY=VALUE",
            "Rasters: a creation option of GDAL's driver; may be given several times")
       .repeated();
-  rows.push_back(ask::memory_row(options.memory, "Memory to work in, as 512M or 2G (default 1G)"));
+  ask::add_memory(rows, options.memory, "Memory to work in, as 512M or 2G (default 1G)");
   return rows;
 }
 

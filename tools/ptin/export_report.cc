@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "tools/ask/mesh.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/mesh_crs.h"
@@ -115,9 +115,7 @@ void print_json_of(const Exported& made, const StoreFile& store) {
   if (made.what != "height") {
     facts.certified_error = facts.certified_deviation = std::numeric_limits<double>::infinity();
   }
-  ask::Json answer;
-  add_told(answer, exported_fields(), made);
-  print_answer(answer, facts);
+  print_answer({}, exported_fields(), made, facts);
 }
 
 void print_exported(const Exported& made, const StoreFacts& facts) {

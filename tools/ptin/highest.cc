@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin highest: the highest or the lowest point of a window or a polygon.
-#include "tools/ask/highest.h"
-
 #include <cstdio>
 #include <optional>
 
@@ -10,6 +8,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -47,8 +46,8 @@ void print_text(const HighestResult& result, const HighestOptions& options, bool
 }
 
 int run_highest(const HighestOptions& options, const Context& context) {
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
+  const Terrain terrain =
+      open_terrain(options.terrain, options.question.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const AskedRegion asked =
       region_of(options.question.region, terrain.store().facts(), crs, context);
@@ -60,17 +59,16 @@ int run_highest(const HighestOptions& options, const Context& context) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
-  ask::Json answer;
-  add_told(answer, ask::highest_fields(), ask::HighestAnswer{&result, request.lowest});
-  print_answer(answer, ask::facts_of(result, terrain.store(), crs, &asked.transformed));
+  print_answer({}, ask::highest_fields(), {&result, request.lowest},
+               ask::facts_of(result, terrain.store(), crs, &asked.transformed));
   return kExitDone;
 }
 
 ask::Parameters parameters_of(HighestOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
-  ask::add_highest(rows, options.question);
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_question(rows, options.question);
+  ask::add_memory(rows, options.memory);
   return rows;
 }
 

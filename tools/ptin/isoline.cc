@@ -14,7 +14,7 @@
 #include "engine/mesh/link.h"
 #include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
-#include "tools/ask/isolines.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -73,10 +73,8 @@ void report(const IsolineOptions& options, const Isolines& lines,
             const IsolineLayer::Written& written, const AskedTerrain& asked,
             const Context& context) {
   if (context.json) {
-    ask::Json answer = {{"output", options.out.output}};
-    add_told(answer, ask::isoline_fields(),
-             ask::IsolineAnswer{&lines, written.lines, written.rings, written.points});
-    print_answer(answer,
+    print_answer({{"output", options.out.output}}, ask::isoline_fields(),
+                 {&lines, written.lines, written.rings, written.points},
                  ask::facts_of(lines, asked.terrain.store(), asked.crs, &asked.transformed));
   } else if (!context.quiet && options.out.output != "-") {
     std::printf("%s: %s (%s closed) at %s, %s; certified %s%s\n", options.out.output.c_str(),
@@ -181,7 +179,7 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
     }
     const double low = band == 0 ? facts.min_height : levels.height(band - 1);
     const double high = band == levels.size() ? facts.max_height : levels.height(band);
-    file.add(std::move(parts), ask::layer_values_of(fields, ask::BandRow{features, low, high}));
+    file.add(std::move(parts), ask::layer_values_of(fields.values_of({features, low, high})));
     ++features;
   }
   file.publish();
@@ -214,10 +212,9 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
   }
   const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs.wkt);
   if (context.json) {
-    ask::Json answer = {{"output", options.out.output}};
-    add_told(answer, ask::band_fields(),
-             ask::BandAnswer{levels.heights(), features, polygons.size()});
-    print_answer(answer, ask::facts_of(refined, terrain.store(), asked.crs, &asked.transformed));
+    print_answer({{"output", options.out.output}}, ask::band_fields(),
+                 {levels.heights(), features, polygons.size()},
+                 ask::facts_of(refined, terrain.store(), asked.crs, &asked.transformed));
   } else if (!context.quiet && options.out.output != "-") {
     std::printf("%s: %s of %s\n", options.out.output.c_str(), counted(features, "band").c_str(),
                 counted(polygons.size(), "polygon").c_str());
@@ -227,8 +224,8 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
 
 int run_isoline(const IsolineOptions& options, const Context& context) {
   check_options(options, context);
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
+  const Terrain terrain =
+      open_terrain(options.terrain, options.question.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   IsolineRequest request = options.question.request;
   request.levels = ask::levels_of(options.question.levels, terrain.store().facts());
@@ -250,8 +247,8 @@ ask::Parameters parameters_of(IsolineOptions& options) {
   add_terrain(rows, options.terrain, true,
               "Folder for temporary files: lines that do not fit in --memory (default: OUT's "
               "folder), --index spatialindex (default: beside FILE)");
-  ask::add_isolines(rows, options.question);
-  rows.push_back(ask::by_row(options.by));
+  ask::add_question(rows, options.question);
+  ask::add_by(rows, options.by);
   rows.add("3d", &options.z, "", "Points carry the height of their line");
   rows.add("polygons", &options.polygons, "",
            "Polygons between the levels, with elev_min and elev_max, instead of "
@@ -261,12 +258,12 @@ ask::Parameters parameters_of(IsolineOptions& options) {
   add_output(rows, options.out,
              "The layer to write; its extension chooses the format: " + known_isoline_extensions() +
                  "; - is GeoJSON on stdout");
-  rows.push_back(ask::memory_row(options.memory,
-                                 "Memory for the extraction, as 512M or 2G (default 4G); what does "
-                                 "not fit goes to --tmp"));
-  rows.push_back(ask::threads_row(options.threads,
-                                  "Threads (default: one a processor that affinity and cgroups "
-                                  "leave this process); the lines are the same for any number"));
+  ask::add_memory(rows, options.memory,
+                  "Memory for the extraction, as 512M or 2G (default 4G); what does "
+                  "not fit goes to --tmp");
+  ask::add_threads(rows, options.threads,
+                   "Threads (default: one a processor that affinity and cgroups "
+                   "leave this process); the lines are the same for any number");
   return rows;
 }
 

@@ -48,7 +48,7 @@ bool IndexLevels::holds(double level) const {
 IsolineLayer::IsolineLayer(const Options& options)
     : options_(options),
       format_(isoline_format_of(options.path)),
-      fields_(ask::isoline_row_fields().told(ask::Door::kProgram, ask::As::kFeature)) {
+      fields_(ask::isoline_row_fields().told(ask::Told::kProgram & ask::Told::kFeature)) {
   if (!options.steps) fields_ = fields_.without("step").without("splits").without("error");
   if (format_ == IsolineFormat::kLandXml) {
     contours_.emplace(options.path, options.overwrite, options.crs);
@@ -95,7 +95,7 @@ void IsolineLayer::add_line(std::span<const MapPoint> points, bool ring, double 
     file_->add(line_geometry(points, &elevation), values);
   } else {
     file_->add(line_geometry(points, options_.z ? &elevation : nullptr),
-               ask::layer_values_of(fields_, ask::IsolineRow{next_id_++, elevation, ring, &step}));
+               ask::layer_values_of(fields_.values_of({next_id_++, elevation, ring, &step})));
   }
   ++written.lines;
   written.rings += ring ? 1 : 0;

@@ -12,7 +12,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
-#include "tools/ask/isolines.h"
+#include "tools/ask/questions.h"
 #include "tools/formats/dxf_units.h"
 #include "tools/formats/land_xml_contours.h"
 #include "tools/formats/vector_file.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin locate: triangle and height at points.
-#include "tools/ask/locate.h"
-
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,6 +14,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "engine/query/questions.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/formats/vector_file.h"
 #include "tools/ptin/answer_output.h"
@@ -37,40 +36,12 @@ struct LocateOptions {
   OutputOptions answer;
 };
 
-/// The answer, point by point.
-struct Located {
-  const Asked<MapPoint>& asked;
-  const LocateResult& result;
-  const StoreFile& store;
-
-  [[nodiscard]] ask::LocatedRow row(std::size_t i) const {
-    ask::LocatedRow row(asked.all[i], result.points[i], store.facts().map);
-    if (!asked.ids.empty()) row.id = &asked.ids[i];
-    return row;
-  }
-  [[nodiscard]] ask::Fields<ask::LocatedRow> fields(ask::As as) const {
-    const auto fields = ask::located_fields().told(ask::Door::kProgram, as);
-    return asked.ids.empty() ? fields.without("id") : fields;
-  }
-};
-
-/// The answer, point by point.
-ask::Json answer_of(const LocateOptions& options, const Located& located) {
-  ask::Json answer = {{"output", output_json(options.answer)}, {"points", ask::Json::array()}};
-  const auto fields = located.fields(ask::As::kObject);
-  for (std::size_t i = 0; i < located.asked.all.size(); ++i) {
-    answer["points"].push_back(ask::object_of(fields, located.row(i)));
-  }
-  return answer;
-}
-
 int run_locate(const LocateOptions& options, const Context& context) {
   if (options.point.empty() == options.points.empty()) {
     throw Error(ErrorCode::invalid_argument, "give either X Y or --points FILE");
   }
   const AnswerForm form = form_of(options.answer, context.json);
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.request.detail.tolerance, context);
+  const Terrain terrain = open_terrain(options.terrain, options.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<MapPoint> asked =
       options.points.empty()
@@ -81,20 +52,21 @@ int run_locate(const LocateOptions& options, const Context& context) {
   request.limits = limits_of(options.memory, context);
   const LocateResult result = terrain.locate(asked.all, request, options.by);
   warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
-  const Located located{asked, result, terrain.store()};
-  const auto row_at = [&](std::size_t i) { return located.row(i); };
-  if (form == AnswerForm::kLayer) {
-    write_layer(options.answer, {"points", wkbPoint, {}, crs.wkt},
-                located.fields(ask::As::kFeature), asked.all.size(), row_at, [&](std::size_t i) {
-                  return std::make_unique<OGRPoint>(asked.all[i].x, asked.all[i].y);
-                });
-  }
-  if (form == AnswerForm::kCsv || !context.json) {
-    write_csv(options.answer, form, context.json,
-              table_of(located.fields(ask::As::kTableRow), asked.all.size(), row_at));
-  }
+  auto fields = ask::located_fields();
+  if (asked.ids.empty()) fields = fields.without("id");
+  const auto row_at = [&](std::size_t i) {
+    ask::LocatedRow row(asked.all[i], result.points[i], terrain.store().facts().map);
+    if (!asked.ids.empty()) row.id = &asked.ids[i];
+    return row;
+  };
+  write_rows(options.answer, form, context.json, {"points", wkbPoint, {}, crs.wkt}, fields,
+             asked.all.size(), row_at, [&](std::size_t i) {
+               return std::make_unique<OGRPoint>(asked.all[i].x, asked.all[i].y);
+             });
   if (context.json) {
-    print_answer(answer_of(options, located), ask::facts_of(result, terrain.store(), crs));
+    print_answer({{"output", output_json(options.answer)},
+                  {"points", objects_of(fields, asked.all.size(), row_at)}},
+                 ask::facts_of(result, terrain.store(), crs));
   }
   return kExitDone;
 }
@@ -108,9 +80,9 @@ ask::Parameters parameters_of(LocateOptions& options) {
            "names so (- reads standard input), or a vector file (transformed to the "
            "terrain's CRS)");
   add_input_choice(rows, options.choice, "points", "x, y");
-  ask::add_locate(rows, options.request);
-  rows.push_back(ask::by_row(options.by));
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_question(rows, options.request);
+  ask::add_by(rows, options.by);
+  ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer);
   return rows;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin profile: heights along a line, as CSV, a layer or a plot.
-#include "tools/ask/profile.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +18,7 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/query/questions.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
@@ -54,20 +53,11 @@ struct Written {
   [[nodiscard]] const std::string* id(std::uint32_t line) const {
     return ids.empty() ? nullptr : &ids[line];
   }
-  [[nodiscard]] ask::ProfileRow row(const ProfilePoint& p) const {
+  [[nodiscard]] ask::ProfileRow row(std::size_t i) const {
+    const ProfilePoint& p = profile.points[i];
     return {p, p.position, profile.certified_deviation, options.has_stations(), id(p.line)};
   }
 };
-
-/// The profile as CSV: heights, with the interval that the certificate guarantees.
-std::string csv_of(const Written& written) {
-  auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kTableRow,
-                                           {"distance", "x", "y", "height", "state", "line"});
-  if (!written.options.has_stations()) fields = fields.without("station");
-  if (written.ids.empty()) fields = fields.without("id");
-  const std::vector<ProfilePoint>& points = written.profile.points;
-  return table_of(fields, points.size(), [&](std::size_t i) { return written.row(points[i]); });
-}
 
 /// The stretches of one line that have heights.
 std::unique_ptr<OGRGeometry> stretches_of(std::span<const ProfilePoint> points) {
@@ -83,33 +73,6 @@ std::unique_ptr<OGRGeometry> stretches_of(std::span<const ProfilePoint> points) 
   return stretches;
 }
 
-/// Writes the profile as a layer, a feature for each line.
-void write_layer(const Written& written) {
-  auto fields = ask::profile_line_fields().told(ask::Door::kProgram, ask::As::kFeature);
-  if (written.ids.empty()) fields = fields.without("id");
-  const std::vector<std::span<const ProfilePoint>> lines = lines_of(written.profile);
-  const auto row_at = [&](std::size_t i) {
-    return ask::ProfileLineRow{lines[i], written.profile, written.id(lines[i].front().line)};
-  };
-  write_layer(written.options.answer, {"profile", wkbMultiLineString25D, {}, written.crs.wkt},
-              fields, lines.size(), row_at, [&](std::size_t i) { return stretches_of(lines[i]); });
-}
-
-/// Writes stations as a layer, a feature for each.
-void write_stations(const Written& written) {
-  auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kFeature);
-  if (written.ids.empty()) fields = fields.without("id");
-  const std::vector<ProfilePoint>& points = written.profile.points;
-  const auto geometry_at = [&](std::size_t i) {
-    const ProfilePoint& p = points[i];
-    const double z = std::isfinite(p.height) ? p.height : 0.0;  // the field tells what is unknown
-    return std::make_unique<OGRPoint>(p.position.x, p.position.y, z);
-  };
-  write_layer(
-      written.options.answer, {"stations", wkbPoint25D, {}, written.crs.wkt}, fields, points.size(),
-      [&](std::size_t i) { return written.row(points[i]); }, geometry_at);
-}
-
 /// How the plot names units, and how distances and heights compare.
 PlotUnits plot_units_of(const CrsFacts& crs) {
   const Ground ground = ground_of(crs);
@@ -118,36 +81,51 @@ PlotUnits plot_units_of(const CrsFacts& crs) {
   return {ask::length_unit_of(crs), crs.vertical_unit, heights};
 }
 
+/// The same fields, but `id` where the input has none.
+template <typename Row>
+ask::Fields<Row> fields_of(const Written& written, const ask::Fields<Row>& all) {
+  return written.ids.empty() ? all.without("id") : all;
+}
+
+/// Writes the profile as a layer, a feature for each line.
+void write_lines(const Written& written) {
+  const std::vector<std::span<const ProfilePoint>> lines = lines_of(written.profile);
+  const auto row_at = [&](std::size_t i) {
+    return ask::ProfileLineRow{lines[i], written.profile, written.id(lines[i].front().line)};
+  };
+  write_rows(written.options.answer, AnswerForm::kLayer, false,
+             {"profile", wkbMultiLineString25D, {}, written.crs.wkt},
+             fields_of(written, ask::profile_line_fields()), lines.size(), row_at,
+             [&](std::size_t i) { return stretches_of(lines[i]); });
+}
+
+/// Writes points as CSV, or as a layer.
+void write_points(const Written& written, AnswerForm form, bool json) {
+  auto fields = fields_of(written, ask::profile_fields());
+  if (!written.options.has_stations()) fields = fields.without("station");
+  const std::vector<ProfilePoint>& points = written.profile.points;
+  const auto geometry_at = [&](std::size_t i) {
+    const ProfilePoint& p = points[i];
+    const double z = std::isfinite(p.height) ? p.height : 0.0;  // the field tells what is unknown
+    return std::make_unique<OGRPoint>(p.position.x, p.position.y, z);
+  };
+  write_rows(
+      written.options.answer, form, json, {"stations", wkbPoint25D, {}, written.crs.wkt}, fields,
+      points.size(), [&](std::size_t i) { return written.row(i); }, geometry_at);
+}
+
 /// Puts the profile where it is asked for.
 void write_profile(const Written& written, bool json) {
   const OutputOptions& answer = written.options.answer;
   const AnswerForm form = form_of(answer, json, {.plot = true});
-  if (form == AnswerForm::kLayer && written.options.stations_only) {
-    write_stations(written);
-  } else if (form == AnswerForm::kLayer) {
-    write_layer(written);
-  } else if (form == AnswerForm::kPlot) {
+  if (form == AnswerForm::kPlot) {
     plot_profile(answer.output, answer.overwrite, written.profile, written.ids,
                  plot_units_of(written.crs));
-  } else if (form == AnswerForm::kCsv || !json) {
-    write_csv(answer, form, json, csv_of(written));
+  } else if (form == AnswerForm::kLayer && !written.options.stations_only) {
+    write_lines(written);
+  } else {
+    write_points(written, form, json);
   }
-}
-
-ask::Json answer_of(const Written& written, const std::optional<Transformed>& transformed,
-                    const StoreFile& store) {
-  ask::Json answer = {{"output", output_json(written.options.answer)},
-                      {"points", ask::Json::array()}};
-  add_told(answer, ask::answer_fields(),
-           ask::facts_of(written.profile, store, written.crs, &transformed));
-  add_told(answer, ask::profile_answer_fields(),
-           ask::ProfileAnswer{written.profile, written.crs,
-                              written.ids.empty() ? nullptr : &written.ids});
-  const auto fields = ask::profile_fields().told(ask::Door::kProgram, ask::As::kObject);
-  for (const ProfilePoint& p : written.profile.points) {
-    answer["points"].push_back(ask::object_of(fields, written.row(p)));
-  }
-  return answer;
 }
 
 int run_profile(const ProfileOptions& options, const Context& context) {
@@ -157,8 +135,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     refuse("a plot draws the ground between stations too; leave --stations-only out",
            options.answer.output);
   }
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.request.detail.tolerance, context);
+  const Terrain terrain = open_terrain(options.terrain, options.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<std::vector<MapPoint>> asked =
       read_lines(options.line, options.choice, plane_of(terrain.store().facts(), crs));
@@ -185,7 +162,13 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   }
   const Written written{options, result, asked.ids, crs};
   write_profile(written, context.json);
-  if (context.json) print_json(answer_of(written, asked.transformed, terrain.store()));
+  if (!context.json) return kExitDone;
+  print_answer({{"output", output_json(options.answer)},
+                {"points", objects_of(ask::profile_fields(), result.points.size(),
+                                      [&](std::size_t i) { return written.row(i); })}},
+               ask::profile_answer_fields(),
+               {result, crs, asked.ids.empty() ? nullptr : &asked.ids},
+               ask::facts_of(result, terrain.store(), crs, &asked.transformed));
   return kExitDone;
 }
 
@@ -197,11 +180,11 @@ ask::Parameters parameters_of(ProfileOptions& options) {
            "file (transformed to the terrain's CRS)")
       .required_at(ask::Door::kBoth);
   add_input_choice(rows, options.choice, "line", "");
-  ask::add_profile(rows, options.request);
+  ask::add_question(rows, options.request);
   rows.add("stations-only", &options.stations_only, "",
            "The stations alone: rows of CSV, or points of a layer")
       .needing("stations");
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, {.plot = true});
   return rows;
 }

@@ -30,10 +30,9 @@ void add_terrain(ask::Parameters& rows, TerrainOptions& options, bool has_index,
       .required_at(ask::Door::kBoth);
   rows.add("no-mmap", &options.no_mmap, "",
            "Read with pread instead of mapping the file (network file systems)");
-  rows.push_back(ask::memory_row(
-      options.remote_cache,
-      "Of a URL: memory for the parts of the file that were read, as 64M (the default)"));
-  rows.back().name = "remote-cache";
+  ask::add_memory(rows, options.remote_cache,
+                  "Of a URL: memory for the parts of the file that were read, as 64M (the default)")
+      .name = "remote-cache";
   rows.add("cache-folder", &options.cache_folder, "DIR",
            "Of a URL: a folder in which what was read is kept for the next time too");
   if (!has_index) return;
@@ -61,6 +60,25 @@ std::shared_ptr<const StoreFile> settled(std::shared_ptr<const StoreFile> store,
   return store;
 }
 
+/// Warns as open_terrain().
+void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
+                     const Context& context) {
+  if (context.quiet || context.json) return;
+  if (!has_surface(store)) {
+    std::fprintf(stderr,
+                 "ptin: warning: %s has no surface, all of it is void: no triangle of its source "
+                 "has heights at its corners; look at the source, and at --nodata, --max-edge and "
+                 "--boundary of ptin build\n",
+                 store.path().c_str());
+  }
+  const double base = store.facts().base_error;
+  if (!error || *error >= base) return;
+  std::fprintf(stderr,
+               "ptin: warning: %s certifies no error below %s (built with --max-error, or heights "
+               "were rounded); the answer is within that, not within %s\n",
+               store.path().c_str(), short_number(base).c_str(), short_number(*error).c_str());
+}
+
 }  // namespace
 
 std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const Context& context) {
@@ -77,7 +95,8 @@ std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options, const
       context);
 }
 
-Terrain open_terrain(const TerrainOptions& options, const Context& context) {
+Terrain open_terrain(const TerrainOptions& options, const std::optional<double>& error,
+                     const Context& context) {
   const auto store = open_store(options, context);
   Terrain terrain(store);
   if (options.index == "spatialindex") {
@@ -88,6 +107,7 @@ Terrain open_terrain(const TerrainOptions& options, const Context& context) {
     index.temporary_folder = options.temporary_folder;
     terrain.use_index(SpatialIndexRTree::open(store, index));
   }
+  warn_of_terrain(*store, error, context);
   return terrain;
 }
 
@@ -131,24 +151,6 @@ void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
   if (!why) return;
   std::fprintf(stderr, "ptin: warning: no %s lies on the terrain, which has %s\n", what.c_str(),
                why->c_str());
-}
-
-void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
-                     const Context& context) {
-  if (context.quiet || context.json) return;
-  if (!has_surface(store)) {
-    std::fprintf(stderr,
-                 "ptin: warning: %s has no surface, all of it is void: no triangle of its source "
-                 "has heights at its corners; look at the source, and at --nodata, --max-edge and "
-                 "--boundary of ptin build\n",
-                 store.path().c_str());
-  }
-  const double base = store.facts().base_error;
-  if (!error || *error >= base) return;
-  std::fprintf(stderr,
-               "ptin: warning: %s certifies no error below %s (built with --max-error, or heights "
-               "were rounded); the answer is within that, not within %s\n",
-               store.path().c_str(), short_number(base).c_str(), short_number(*error).c_str());
 }
 
 QueryLimits limits_of(std::optional<std::uint64_t> memory, const Context& context) {

@@ -34,10 +34,14 @@ struct TerrainOptions {
 /// @param tmp_help  Of --tmp beside --index; empty: that of the index alone.
 void add_terrain(ask::Parameters& rows, TerrainOptions& options, bool has_index,
                  const std::string& tmp_help = {});
-/// Opens the terrain, and turns what was given with a unit into its units.
-/// @throws Error as Terrain::open, open_remote_store and ask::Reading::settle
-[[nodiscard]] Terrain open_terrain(const TerrainOptions& options, const Context& context);
-/// The same without T0 as a mesh.
+/// Opens the terrain, and turns what was given with a unit into its units. Warns on stderr, but with -q
+/// and --json, where it has no surface, so that every answer is void, and where the file keeps less
+/// detail than the error asks for (`build --max-error`): the answer then certifies what the file keeps.
+/// @param error  The allowed one.
+/// @throws Error as Terrain::open, open_remote_store, ask::Reading::settle and has_surface()
+[[nodiscard]] Terrain open_terrain(const TerrainOptions& options,
+                                   const std::optional<double>& error, const Context& context);
+/// Opens the file alone.
 [[nodiscard]] std::shared_ptr<const StoreFile> open_store(const TerrainOptions& options,
                                                           const Context& context);
 
@@ -71,13 +75,6 @@ void tell_transformed(const std::optional<Transformed>& transformed, const std::
 void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
                      const StoreFacts& facts, const CrsFacts& crs, const Context& context);
 
-/// Writes a warning to stderr where a terrain has no surface, so that every answer is void, and where
-/// the file keeps less detail than --error asks for (`build --max-error`): the answer then certifies
-/// what the file keeps. Silent with -q and --json.
-/// @throws Error corruption as has_surface()
-void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
-                     const Context& context);
-
 /// The bytes of --memory. Without it: `otherwise`, or three quarters of what the process is allowed
 /// where that is less.
 [[nodiscard]] std::uint64_t memory_limit_of(std::optional<std::uint64_t> memory,
@@ -87,11 +84,19 @@ void warn_of_terrain(const StoreFile& store, const std::optional<double>& error,
 
 /// Adds what the command line tells of a row.
 template <typename Row>
-void add_told(ask::Json& answer, const ask::Fields<Row>& fields, const Row& row) {
-  ask::put(answer, fields.told(ask::Door::kProgram, ask::As::kObject), row);
+void add_told(ask::Json& answer, const ask::Fields<Row>& all, const Row& row) {
+  const auto fields = all.told(ask::Told::kProgram & ask::Told::kObject);
+  ask::put(answer, fields, fields.values_of(row));
 }
 /// Prints an answer with the fields that every answer has.  @throws Error as write_to_stdout
 void print_answer(ask::Json answer, const ask::AnswerFacts& facts);
+/// The same with those of this one.
+template <typename Row>
+void print_answer(ask::Json answer, const ask::Fields<Row>& fields, const Row& row,
+                  const ask::AnswerFacts& facts) {
+  add_told(answer, fields, row);
+  print_answer(std::move(answer), facts);
+}
 /// Prints JSON, indented and by the order of names, and a newline to stdout. Infinite numbers become null.
 /// @throws Error as write_to_stdout
 void print_json(const nlohmann::json& json);

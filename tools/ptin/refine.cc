@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "tools/ask/mesh.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -118,8 +118,7 @@ void print_stats(const RefineOptions& options, const RefinedTin& refined) {
 
 int run_refine(const RefineOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.request.detail.tolerance, context);
+  const Terrain terrain = open_terrain(options.terrain, options.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   RefineRequest request = options.request;
   const AskedRegion asked = region_of(options.region, terrain.store().facts(), crs, context);
@@ -142,11 +141,10 @@ int run_refine(const RefineOptions& options, const Context& context) {
                  options.out.output.c_str());
   }
   if (context.json) {
-    ask::Json answer = {{"output", options.out.output}};
-    add_told(answer, ask::mesh_fields(),
-             ask::MeshAnswer{&refined, written.vertices.size(), written.triangles.size(),
-                             has_frame(options.out.output) ? &written.frame : nullptr});
-    print_answer(answer, ask::facts_of(refined, terrain.store(), crs, &asked.transformed));
+    print_answer({{"output", options.out.output}}, ask::mesh_fields(),
+                 {&refined, written.vertices.size(), written.triangles.size(),
+                  has_frame(options.out.output) ? &written.frame : nullptr},
+                 ask::facts_of(refined, terrain.store(), crs, &asked.transformed));
   } else if (!context.quiet) {
     print_written(options, refined, mesh, terrain.store());
     if (options.model.base) {
@@ -180,7 +178,7 @@ ask::Parameters parameters_of(RefineOptions& options) {
   add_output(rows, options.out, "The mesh to write; its extension chooses the format: " + formats);
   add_model(rows, options.model);
   rows.add("stats", &options.stats, "", "Print what is certified and what it cost, too");
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_memory(rows, options.memory);
   return rows;
 }
 

@@ -126,8 +126,7 @@ void warn_of_picture(const RefinedTin& refined, const StoreFile& store, const st
 
 int run_render(const RenderOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.error, context);
+  const Terrain terrain = open_terrain(options.terrain, options.error, context);
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
   const std::optional<Region> region =
@@ -178,8 +177,8 @@ ask::Parameters parameters_of(RenderOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
   ask::add_region(rows, options.region, ask::RegionKinds::kWindow, ask::Door::kProgram);
-  rows.push_back(ask::error_row(
-      options.error, "Certified error allowed; without it as fine as the pixels can show"));
+  ask::add_error(rows, options.error,
+                 "Certified error allowed; without it as fine as the pixels can show");
   rows.add("size", &options.size, "W H", "Pixels (default: the longer side has 1200)")
       .within({.least = 1, .most = kMostPixels})
       .values(2, 2);
@@ -187,7 +186,7 @@ ask::Parameters parameters_of(RenderOptions& options) {
   rows.add("pages", &options.pages, "", "Colour triangles by the page that each came from");
   rows.add("no-legend", &options.no_legend, "", "No scale bar and no height colours");
   add_output(rows, options.out, "The picture to write: " + known_picture_extensions());
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_memory(rows, options.memory);
   return rows;
 }
 

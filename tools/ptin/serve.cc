@@ -162,8 +162,8 @@ ask::Parameters parameters_of(ServeCommand& command) {
   rows.add("config", &command.config, "FILE",
            "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
            "[collections], [limits]; options win over it");
-  rows.push_back(ask::threads_row(
-      command.threads, "Questions of each lane (points, tiles, sweeps) that are computed at once"));
+  ask::add_threads(rows, command.threads,
+                   "Questions of each lane (points, tiles, sweeps) that are computed at once");
   rows.add("memory", &command.memory, "SIZE",
            "Memory of all bodies, questions and answers; as much as fills all threads "
            "without it");

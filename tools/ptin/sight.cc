@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin sight: is one point seen from another.
-#include "tools/ask/sight.h"
-
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,7 +15,7 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/query/questions.h"
-#include "tools/ask/answer_facts.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
@@ -75,82 +72,13 @@ PlottedSight plotted(const Terrain& terrain, const SightRequest& request, const 
   return plotted;
 }
 
-/// Takes the answers one by one, and puts them where they are asked for.
-class SightAnswers {
- public:
-  SightAnswers(const SightOptions& options, const Asked<SightPair>& asked, const Context& context,
-               const CrsFacts& crs)
-      : options_(options),
-        asked_(asked),
-        is_json_(context.json),
-        form_(form_of(options.answer, context.json, {.plot = true})),
-        crs_(crs) {}
-
-  [[nodiscard]] bool are_plotted() const { return form_ == AnswerForm::kPlot; }
-
-  /// Takes the answer of the next pair with what the plot shows of it.
-  void add_plotted(const SightResult& result, PlottedSight sight) {
-    sight.title = "line of sight";
-    if (!options_.pairs.empty()) sight.title = "pair " + std::to_string(results_.size() + 1);
-    if (!asked_.ids.empty()) sight.title = asked_.ids[results_.size()];
-    sight.result = result;
-    plotted_.push_back(std::move(sight));
-    add(result);
-  }
-  void add(const SightResult& result) { results_.push_back(result); }
-
-  /// Completes what is written. Returns the answers as JSON, where that is asked for.
-  ask::Json finish(const SightRequest& request, const PlotUnits& units) {
-    const auto row_at = [&](std::size_t i) {
-      ask::SightRow row(results_[i]);
-      if (!asked_.ids.empty()) row.id = &asked_.ids[i];
-      return row;
-    };
-    if (form_ == AnswerForm::kLayer) {
-      write_layer(options_.answer, {"lines_of_sight", wkbLineString, {}, crs_.wkt},
-                  fields(ask::As::kFeature), results_.size(), row_at, [&](std::size_t i) {
-                    const std::array<MapPoint, 2> ends = {asked_.all[i].a, asked_.all[i].b};
-                    return line_geometry(ends, nullptr);
-                  });
-    }
-    if (are_plotted()) {
-      plot_sights(options_.answer.output, options_.answer.overwrite, plotted_,
-                  {request.curvature, request.wavelength}, units);
-    }
-    if (form_ == AnswerForm::kCsv || (form_ == AnswerForm::kStdout && !is_json_)) {
-      write_csv(options_.answer, form_, is_json_,
-                table_of(fields(ask::As::kTableRow), results_.size(), row_at));
-    }
-    ask::Json all = ask::Json::array();
-    const auto told = fields(ask::As::kObject);
-    for (std::size_t i = 0; is_json_ && i < results_.size(); ++i) {
-      all.push_back(ask::object_of(told, row_at(i)));
-    }
-    return all;
-  }
-
- private:
-  [[nodiscard]] ask::Fields<ask::SightRow> fields(ask::As as) const {
-    const auto fields = ask::sight_fields().told(ask::Door::kProgram, as);
-    return asked_.ids.empty() ? fields.without("id") : fields;
-  }
-
-  const SightOptions& options_;
-  const Asked<SightPair>& asked_;
-  bool is_json_;
-  AnswerForm form_;
-  const CrsFacts& crs_;
-  std::vector<SightResult> results_;
-  std::vector<PlottedSight> plotted_;
-};
-
 int run_sight(const SightOptions& options, const Context& context) {
   if (options.pair.empty() == options.pairs.empty()) {
     throw Error(ErrorCode::invalid_argument, "give either X1 Y1 H1 X2 Y2 H2 or --pairs FILE");
   }
-  std::ignore = form_of(options.answer, context.json, {.plot = true});  // before the work
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
+  const AnswerForm form = form_of(options.answer, context.json, {.plot = true});
+  const Terrain terrain =
+      open_terrain(options.terrain, options.question.request.detail.tolerance, context);
   const CrsFacts crs = crs_facts(terrain.store());
   const Asked<SightPair> asked = pairs_of(options, plane_of(terrain.store().facts(), crs));
   warn_of_empty_input(asked.all.empty(), options.pairs, "pair", context);
@@ -158,22 +86,47 @@ int run_sight(const SightOptions& options, const Context& context) {
   ask::set_ground(question, ground_of(crs));
   SightRequest& request = question.request;
   request.limits = limits_of(options.memory, context);
-  SightAnswers answers(options, asked, context, crs);
-  if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
+  const bool are_plotted = form == AnswerForm::kPlot;
+  if (are_plotted) require_panels(asked.all.size(), "pairs", options.answer.output);
   const std::string unit = unit_of_ground(crs);
   SightSolver solver =
       terrain.sight_lines(request, ask::coarse_records_for(asked.all.size()), options.by);
+  std::vector<SightResult> results;
+  std::vector<PlottedSight> sights;
   for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());
-    answers.are_plotted() ? answers.add_plotted(result, plotted(terrain, request, pair, unit))
-                          : answers.add(result);
+    if (are_plotted) {
+      PlottedSight& sight = sights.emplace_back(plotted(terrain, request, pair, unit));
+      sight.title =
+          options.pairs.empty() ? "line of sight" : "pair " + std::to_string(sights.size());
+      if (!asked.ids.empty()) sight.title = asked.ids[results.size()];
+      sight.result = result;
+    }
+    results.push_back(std::move(result));
   }
   std::vector<MapPoint> ends;
   for (const SightPair& pair : asked.all) ends.insert(ends.end(), {pair.a, pair.b});
   warn_of_outside(ends, "end", terrain.store().facts(), crs, context);
-  const ask::Json all = answers.finish(request, {unit, unit});
+  auto fields = ask::sight_fields();
+  if (asked.ids.empty()) fields = fields.without("id");
+  const auto row_at = [&](std::size_t i) {
+    ask::SightRow row(results[i]);
+    if (!asked.ids.empty()) row.id = &asked.ids[i];
+    return row;
+  };
+  if (are_plotted) {
+    plot_sights(options.answer.output, options.answer.overwrite, sights,
+                {request.curvature, request.wavelength}, {unit, unit});
+  } else {
+    write_rows(options.answer, form, context.json, {"lines_of_sight", wkbLineString, {}, crs.wkt},
+               fields, results.size(), row_at, [&](std::size_t i) {
+                 const std::array<MapPoint, 2> ends_of_line = {asked.all[i].a, asked.all[i].b};
+                 return line_geometry(ends_of_line, nullptr);
+               });
+  }
   if (!context.json) return kExitDone;
+  const ask::Json all = objects_of(fields, results.size(), row_at);
   ask::Json units = ask::units_json(crs);
   units["length"] = unit;
   ask::Json answer = {{"base_cost", ask::cost_json(solver.base_cost())}, {"pairs", all}};
@@ -197,9 +150,9 @@ ask::Parameters parameters_of(SightOptions& options) {
            "h1 x2 y2 h2 (- reads standard input), or a vector file of lines with "
            "heights at their ends");
   add_input_choice(rows, options.choice, "pairs", "x1, y1, h1, x2, y2, h2");
-  ask::add_sight(rows, options.question);
-  rows.push_back(ask::by_row(options.by));
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_question(rows, options.question);
+  ask::add_by(rows, options.by);
+  ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, {.plot = true});
   return rows;
 }

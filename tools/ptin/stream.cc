@@ -8,7 +8,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
-#include "tools/ask/mesh.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -92,9 +92,8 @@ void print_stats(const StreamOptions& options, const StreamSummary& s) {
 
 int run_stream(const StreamOptions& options, const Context& context) {
   check_options(options, context);
-  const Terrain terrain = open_terrain(options.terrain, context);
+  const Terrain terrain = open_terrain(options.terrain, options.wanted.error, context);
   const StoreFile& store = terrain.store();
-  warn_of_terrain(store, options.wanted.error, context);
   StreamRequest request;
   request.wanted = predicate_of(options.wanted, store.facts(), "--window");
   request.tolerance = options.wanted.error;
@@ -109,9 +108,7 @@ int run_stream(const StreamOptions& options, const Context& context) {
         ask::facts_of(summary.certificate,
                       summary.certificate.complete && store.facts().base_error == 0, store, crs);
     facts.cost = &summary.cost;
-    ask::Json answer = {{"output", options.out.output}};
-    add_told(answer, ask::stream_fields(), summary);
-    print_answer(answer, facts);
+    print_answer({{"output", options.out.output}}, ask::stream_fields(), summary, facts);
   } else if (options.stats) {
     print_stats(options, summary);
   }
@@ -125,8 +122,8 @@ void add_serving(ask::Parameters& rows, Serving& serving, bool is_had) {
            what + " window")
       .in(ask::Unit::kMap)
       .values(4, 4);
-  rows.push_back(ask::error_row(serving.error, what + " certified error"));
-  if (is_had) rows.back().name = "have-error";
+  ask::add_error(rows, serving.error, what + " certified error").name =
+      is_had ? "have-error" : "error";
   rows.add(is_had ? "have-level" : "level", &serving.levels, "H...",
            what + " heights: only what isolines at them need")
       .in(ask::Unit::kHeight)
@@ -147,7 +144,7 @@ ask::Parameters parameters_of(StreamOptions& options) {
            "it");
   add_output(rows, options.out, "The stream to write; - for stdout");
   rows.add("stats", &options.stats, "", "Print, on stderr, what was sent and what it cost");
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_memory(rows, options.memory);
   return rows;
 }
 

@@ -14,7 +14,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
 #include "engine/stop.h"
-#include "tools/ask/mesh.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -316,7 +316,7 @@ ask::Parameters parameters_of(UnstreamOptions& options) {
       "chooses the format. None: only tell what arrived",
       false);
   add_stream_isolines(rows, options.isolines);
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_memory(rows, options.memory);
   return rows;
 }
 

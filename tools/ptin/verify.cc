@@ -78,7 +78,7 @@ std::optional<Terrain> open_if_sound(const VerifyCommand& command, const Context
                                      Findings& findings) {
   if (!findings.faults.empty()) return std::nullopt;
   try {
-    return open_terrain(command.terrain, context);
+    return Terrain(open_store(command.terrain, context));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corruption) throw;
     findings.faults.push_back({error.message(), error.context()});
@@ -288,9 +288,9 @@ Declared declare_verify(Context& context) {
       .within(ask::kNotNegative)
       .values(1, ask::kAnyNumberOfValues)
       .needing("against");
-  rows.push_back(ask::memory_row(command->memory,
-                                 "Memory to check the splits in, and to sort the points of the "
-                                 "source in, as 512M or 2G (default 1G)"));
+  ask::add_memory(rows, command->memory,
+                  "Memory to check the splits in, and to sort the points of the "
+                  "source in, as 512M or 2G (default 1G)");
   rows.add(
       "tmp",
       [&tmp = command->tmp](const std::string& folder) {

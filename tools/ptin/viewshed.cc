@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin viewshed: what one observer sees, as a raster or as points.
-#include "tools/ask/viewshed.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -20,6 +18,7 @@
 #include "engine/crs/ground.h"
 #include "engine/query/questions.h"
 #include "engine/stop.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -151,7 +150,7 @@ void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const 
                     const Context& context) {
   write_layer(
       options.out, {"viewshed", wkbPoint, {}, wkt},
-      ask::target_fields().told(ask::Door::kProgram, ask::As::kFeature), seen.vertices.size(),
+      ask::target_fields().told(ask::Told::kProgram & ask::Told::kFeature), seen.vertices.size(),
       [&](std::size_t i) -> const Viewshed::Target& {
         if (i % kStopInterval == 0) check_stop(context, options);
         return seen.vertices[i];
@@ -166,9 +165,8 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFil
             const CrsFacts& crs, const Context& context) {
   const bool raster = is_raster(options.out.output);
   if (context.json) {
-    ask::Json answer = {{"output", options.out.output}};
-    add_told(answer, ask::viewshed_fields(), ask::ViewshedAnswer{&seen, raster});
-    print_answer(answer, ask::facts_of(seen, store, crs));
+    print_answer({{"output", options.out.output}}, ask::viewshed_fields(), {&seen, raster},
+                 ask::facts_of(seen, store, crs));
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;
     const std::uint64_t hidden = raster ? seen.hidden_pixels : seen.hidden_vertices;
@@ -183,8 +181,8 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFil
 
 int run_viewshed(const ViewshedOptions& options, const Context& context) {
   check_options(options);
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.question.request.detail.tolerance, context);
+  const Terrain terrain =
+      open_terrain(options.terrain, options.question.request.detail.tolerance, context);
   // Without --pixel-size, a terrain of points is refused here: its grid is far finer than anybody
   // wants to see.
   if (is_raster(options.out.output) && options.pixel_size.empty()) {
@@ -217,7 +215,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
 ask::Parameters parameters_of(ViewshedOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, true);
-  ask::add_viewshed(rows, options.question);
+  ask::add_question(rows, options.question);
   rows.add("pixel-size", &options.pixel_size, "S",
            "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, "
            "converted at the observer (default: that of the raster it was built "
@@ -227,8 +225,7 @@ ask::Parameters parameters_of(ViewshedOptions& options) {
       "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with `visible` "
       "and `certain` (" +
           known_vector_extensions() + ")");
-  rows.push_back(
-      ask::memory_row(options.memory, "Memory for the answer, as 512M or 2G (default 4G)"));
+  ask::add_memory(rows, options.memory, "Memory for the answer, as 512M or 2G (default 4G)");
   return rows;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ptin volume: cut and fill against a level or another terrain.
-#include "tools/ask/volume.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +15,7 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/query/questions.h"
+#include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -118,9 +117,9 @@ ask::VolumeAnswer answer_of(std::span<const VolumeResult> results, std::span<con
         {&results[i], other == nullptr ? std::optional(levels[i]) : std::nullopt});
   }
   if (other != nullptr) {
-    const Certificate& c = results.front().other_certificate;
-    answer.against = {options.question.against, c.error, c.deviation,
-                      border_moved_at_most(other->store(), c.error)};
+    answer.against = options.question.against;
+    answer.other_facts = ask::facts_of(results.front().other_certificate, results.front().exact,
+                                       other->store(), crs);
   }
   return answer;
 }
@@ -132,9 +131,7 @@ void print_volumes(const ask::VolumeAnswer& told, const VolumeOptions& options,
   ask::AnswerFacts facts = ask::facts_of(result.certificate, result.exact, store, crs);
   facts.transformed = &transformed;
   facts.cost = &result.cost;
-  ask::Json answer = {{"output", output_json(options.answer)}};
-  add_told(answer, ask::volume_fields(), told);
-  print_answer(answer, facts);
+  print_answer({{"output", output_json(options.answer)}}, ask::volume_fields(), told, facts);
 }
 
 /// The levels that are asked for: none where another terrain stands in their place.
@@ -199,16 +196,14 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     refuse("a table or a plot is of levels, and another terrain has none; leave -o out",
            options.answer.output);
   }
-  const Terrain terrain = open_terrain(options.terrain, context);
-  warn_of_terrain(terrain.store(), options.question.detail.tolerance, context);
+  const Terrain terrain = open_terrain(options.terrain, options.question.detail.tolerance, context);
   CrsFacts crs = crs_facts(terrain.store());
   std::optional<Terrain> other;
   double other_height_scale = 1.0;
   if (!options.question.against.empty()) {
     TerrainOptions of_other = options.terrain;
     of_other.file = options.question.against;
-    other = open_terrain(of_other, context);
-    warn_of_terrain(other->store(), options.question.detail.tolerance, context);
+    other = open_terrain(of_other, options.question.detail.tolerance, context);
     const CrsFacts crs_of_other = crs_facts(other->store());
     check_comparable(crs, crs_of_other, options, context);
     other_height_scale = height_scale(crs, crs_of_other, options, context);
@@ -238,8 +233,8 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   } else if (is_table) {
     // A row for each level: a stage-storage curve.
     write_csv(options.answer, form, context.json,
-              table_of(ask::volume_row_fields().told(ask::Door::kProgram, ask::As::kTableRow),
-                       told.rows.size(), [&](std::size_t i) { return told.rows[i]; }));
+              table_of(ask::volume_row_fields().told(ask::Told::kTableRow), told.rows.size(),
+                       [&](std::size_t i) { return told.rows[i]; }));
   }
   if (context.json) {
     print_volumes(told, options, terrain.store(), crs, asked.transformed);
@@ -252,12 +247,12 @@ int run_volume(const VolumeOptions& options, const Context& context) {
 ask::Parameters parameters_of(VolumeOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
-  ask::add_volume(rows, options.question);
-  rows.push_back(ask::memory_row(options.memory));
+  ask::add_question(rows, options.question);
+  ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, kAnswerKinds);
-  rows.push_back(ask::threads_row(options.threads,
-                                  "Threads (default: one a processor that affinity and cgroups "
-                                  "leave this process); the answer is the same for any number"));
+  ask::add_threads(rows, options.threads,
+                   "Threads (default: one a processor that affinity and cgroups "
+                   "leave this process); the answer is the same for any number");
   return rows;
 }
 
