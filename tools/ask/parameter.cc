@@ -230,7 +230,7 @@ void Reading::put(const Parameter& p, std::span<const std::string> values, Value
 }
 
 void Reading::take(const Parameter& p, std::span<const std::string> values) {
-  given_[std::string(p.name)] = true;
+  given_[std::string(p.name)].assign(values.begin(), values.end());
   const bool is_window = std::holds_alternative<std::optional<Window>*>(p.into);
   if (is_list(p) && !is_window &&
       (values.size() < p.least_values || values.size() > p.most_values)) {
@@ -259,7 +259,7 @@ void Reading::check(std::span<const Parameter> parameters) const {
   for (const Parameter& p : parameters) {
     if (!is_at(p.doors, door_)) continue;
     const std::string name = name_at(p, door_);
-    if (!has(p.name)) {
+    if (!given_.contains(p.name)) {
       if (!is_at(p.required, door_)) continue;
       refuse("is required: " + help_at(p, door_) +
                  (p.example.empty() ? "" : ", as " + std::string(p.example)),
@@ -267,12 +267,12 @@ void Reading::check(std::span<const Parameter> parameters) const {
     }
     if (!is_at(p.bound_at, door_)) continue;
     for (const std::string_view other : parts_of(p.excludes, ' ')) {
-      const Parameter* const given = has(other) ? find(parameters, other) : nullptr;
+      const Parameter* const given = given_.contains(other) ? find(parameters, other) : nullptr;
       if (given != nullptr)
         refuse("excludes " + name_at(*given, door_) + "; give one of them", name);
     }
     for (const std::string_view other : parts_of(p.needs, ' ')) {
-      const Parameter* const needed = has(other) ? nullptr : find(parameters, other);
+      const Parameter* const needed = given_.contains(other) ? nullptr : find(parameters, other);
       if (needed != nullptr) refuse("needs " + name_at(*needed, door_) + "; give both", name);
     }
   }

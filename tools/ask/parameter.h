@@ -158,8 +158,8 @@ class Reading {
 
   /// Takes the values of one parameter; of a flag on the command line there are none.
   void take(const Parameter& parameter, std::span<const std::string> values);
-  /// Whether a parameter was given.
-  [[nodiscard]] bool has(std::string_view name) const { return given_.contains(name); }
+  /// What was given, by the names of the parameters.
+  [[nodiscard]] const auto& given() const noexcept { return given_; }
   /// Looks at what is missing, and at what was given together.
   void check(std::span<const Parameter> parameters) const;
   /// Whether something waits for the terrain's units.
@@ -182,7 +182,7 @@ class Reading {
   void put(const Parameter& parameter, std::span<const std::string> values, Value& value);
 
   Door door_;
-  std::map<std::string, bool, std::less<>> given_;
+  std::map<std::string, std::vector<std::string>, std::less<>> given_;
   std::vector<Waiting> waiting_;
 };
 

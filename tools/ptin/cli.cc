@@ -246,10 +246,8 @@ std::string unknown_subcommand(std::span<const std::string> words) {
 
 /// Writes a sentence about wrong use, and how to get help.
 /// @returns the exit status
-int report_wrong_use(int command, const std::string& message, bool json) {
-  const std::string name =
-      command < 0 ? std::string()
-                  : kCommands.at(static_cast<std::size_t>(command)).name + std::string(" ");
+int report_wrong_use(const Command* command, const std::string& message, bool json) {
+  const std::string name = command == nullptr ? "" : command->name + std::string(" ");
   report_error({ErrorCode::invalid_argument, message + "; see ptin " + name + "--help"}, json);
   return status_of(ErrorCode::invalid_argument).exit;
 }
@@ -275,20 +273,17 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
       std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
   const bool json = context.json;
   tell_refused_memory_as_json(json);
-  CommandLine line(context);
   const std::vector<std::string> words = words_of(argc, argv);
-  if (words.empty()) {
-    std::fputs(line.help().c_str(), stderr);
-    return status_of(ErrorCode::invalid_argument).exit;
-  }
   if (const std::string word = unknown_subcommand(words); !word.empty())
-    return report_wrong_use(-1, unknown_subcommand_sentence(word), json);
-  const CommandLine::Parsed parsed = line.parse(words);
+    return report_wrong_use(nullptr, unknown_subcommand_sentence(word), json);
+  ParsedWords parsed = parse_words(words, context);
   if (!parsed.fault.empty()) return report_wrong_use(parsed.command, parsed.fault, json);
-  if (!parsed.status) check_inputs_are_kept(line.options_of(parsed.command));
-  const int status = parsed.status ? *parsed.status : line.run(parsed.command);
+  if (!parsed.status) {
+    check_inputs_are_kept(*context.reading);
+    parsed.status = parsed.declared.run();
+  }
   finish_stdout();
-  return status;
+  return *parsed.status;
 }
 
 int report_current_error(bool json) noexcept {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/command_line.h"
 
-#include <algorithm>
+#include <cstdio>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/error.h"
+#include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/cli.h"
 #include "tools/ptin/help_text.h"
@@ -42,22 +44,6 @@ bool has_name(std::string_view list, std::string_view name) {
   return (" " + std::string(list) + " ").find(" " + std::string(name) + " ") != std::string::npos;
 }
 
-/// The value's name and which values there are: "TEXT:{stars,splits}", "N in [1 - 1024]".
-std::string values_of(const ask::Parameter& row) {
-  std::string text(row.metavar);
-  const char* before = text.empty() ? "{" : ":{";
-  for (const std::string_view choice : row.choices) {
-    text.append(before).append(choice);
-    before = ",";
-  }
-  if (!row.choices.empty()) text += "}";
-  const auto [least, most] = std::pair(row.range.least, row.range.most);
-  if (least > ask::kFinite.least && most < ask::kFinite.most) {
-    text += " in [" + short_number(least) + " - " + short_number(most) + "]";
-  }
-  return text;
-}
-
 /// What help says of a parameter behind its name: "E Excludes: --vertices".
 std::string help_of_value(const ask::Parameter& row, const ask::Parameters& rows) {
   std::string text = values_of(row);
@@ -67,7 +53,6 @@ std::string help_of_value(const ask::Parameter& row, const ask::Parameters& rows
   if (is_at(row.required, ask::Door::kProgram)) text += " REQUIRED";
   std::string needed, excluded;
   for (const ask::Parameter& other : rows) {
-    if (!is_at(other.doors, ask::Door::kProgram)) continue;
     const std::string name = " " + ask::name_at(other, ask::Door::kProgram);
     if (has_name(row.needs, other.name)) needed += name;
     // One of both says that they exclude each other; help tells it at both.
@@ -105,43 +90,81 @@ void declare(CLI::App& app, const ask::Parameter& row, const ask::Parameters& ro
   if (const std::string text = help_of_value(row, rows); !text.empty()) option->option_text(text);
 }
 
-/// Declares parameters, and what holds for every subcommand; last, so that --help ends with it.
-void declare(CLI::App& app, const ask::Parameters& rows, Context& context) {
-  for (const ask::Parameter& row : rows) {
-    if (is_at(row.doors, ask::Door::kProgram)) declare(app, row, rows, *context.reading);
-  }
-  app.add_flag("--json", context.json, "Print the answer, and an error, as JSON");
-  app.add_flag("-q,--quiet", context.quiet,
-               "No progress, report or warning: on stderr errors alone");
+/// CLI11 has this flag of itself.
+ask::Parameter help_row() {
+  return {.name = "help",
+          .words = "-h,--help",
+          .into = static_cast<bool*>(nullptr),
+          .help = "Print help and exit"};
 }
 
-OptionFacts facts_of(const CLI::Option& option) {
-  OptionFacts facts;
-  for (const std::string& name : option.get_snames()) facts.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) facts.names.push_back("--" + name);
-  facts.is_argument = facts.names.empty();
-  if (facts.is_argument) facts.names.push_back(option.get_name());
-  if (option.get_type_size() != 0) facts.metavar = option.get_type_name();
-  facts.least_values = option.get_items_expected_min();
-  facts.most_values = option.get_items_expected_max();
-  facts.help = option.get_description();
-  facts.given = option.results();
-  return facts;
+/// Adds what every subcommand has.
+void add_common(ask::Parameters& rows, Context& context) {
+  rows.add("json", &context.json, "", "Print the answer, and an error, as JSON");
+  rows.add("quiet", &context.quiet, "", "No progress, report or warning: on stderr errors alone")
+      .spelled("-q,--quiet");
+}
+
+void declare(CLI::App& app, const ask::Parameters& rows, ask::Reading& reading) {
+  for (const ask::Parameter& row : rows) {
+    if (row.name != help_row().name) declare(app, row, rows, reading);
+  }
+}
+
+/// The values of the option with whose name a message of CLI11's begins.
+std::vector<std::string> given_in(const CLI::App& app, const std::string& message) {
+  for (const CLI::Option* const option : app.get_options()) {
+    if (message.starts_with(option->get_name() + ": ")) return option->results();
+  }
+  return {};
 }
 
 }  // namespace
 
-struct CommandLine::Inside {
-  std::span<const Command> commands;
-  CLI::App app{program_summary(), "ptin"};
-  std::vector<Declared> declared;
-  ask::Reading* reading = nullptr;
-};
+std::vector<std::string> names_of(const ask::Parameter& row) {
+  if (row.words.empty()) return {"--" + std::string(row.name)};
+  const std::vector<std::string_view> names = ask::parts_of(row.words, ',');
+  return {names.begin(), names.end()};
+}
 
-void read_words(const ask::Parameters& rows, const std::vector<std::string>& words) {
+bool is_argument(const ask::Parameter& row) {
+  return !row.words.empty() && !row.words.starts_with('-');
+}
+
+std::string values_of(const ask::Parameter& row) {
+  if (ask::is_flag(row)) return {};
+  std::string text(row.metavar);
+  const char* before = text.empty() ? "{" : ":{";
+  for (const std::string_view choice : row.choices) {
+    text.append(before).append(choice);
+    before = ",";
+  }
+  if (!row.choices.empty()) text += "}";
+  const auto [least, most] = std::pair(row.range.least, row.range.most);
+  if (least > ask::kFinite.least && most < ask::kFinite.most) {
+    text += " in [" + short_number(least) + " - " + short_number(most) + "]";
+  }
+  return text;
+}
+
+const char* program_summary() noexcept {
+  return "Progressive TINs on disk: terrains larger than memory, refined exactly where asked";
+}
+
+Declared declared_of(const Command& command, Context& context) {
+  Declared declared = command.declare(context);
+  std::erase_if(declared.parameters,
+                [](const auto& row) { return !is_at(row.doors, ask::Door::kProgram); });
+  declared.parameters.insert(declared.parameters.begin(), help_row());
+  add_common(declared.parameters, context);
+  return declared;
+}
+
+void read_words(ask::Parameters rows, const std::vector<std::string>& words) {
   Context context;
+  add_common(rows, context);
   CLI::App app;
-  declare(app, rows, context);
+  declare(app, rows, *context.reading);
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& error) {
@@ -150,56 +173,35 @@ void read_words(const ask::Parameters& rows, const std::vector<std::string>& wor
   context.reading->check(rows);
 }
 
-const char* program_summary() noexcept {
-  return "Progressive TINs on disk: terrains larger than memory, refined exactly where asked";
-}
-
-CommandLine::CommandLine(Context& context, std::span<const Command> all)
-    : inside_(std::make_unique<Inside>()) {
-  CLI::App& app = inside_->app;
-  inside_->commands = all;
-  inside_->declared.reserve(all.size());  // Options point at the rows.
-  inside_->reading = context.reading.get();
+ParsedWords parse_words(const std::vector<std::string>& words, Context& context,
+                        std::span<const Command> all) {
+  CLI::App app{program_summary(), "ptin"};
   app.set_version_flag("--version", std::string("ptin ").append(PTIN_VERSION));
-  app.set_help_flag("-h,--help", "Print help and exit");
+  app.set_help_flag("-h,--help", help_row().help);
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormatter>());
   app.footer(std::string("`ptin SUBCOMMAND --help` tells more and gives examples.\n\n")
                  .append(exit_statuses()));
+  CLI::App* asked = &app;
+  ParsedWords parsed;
+  parsed.declared.parameters = {help_row()};
+  parsed.declared.parameters.add("version", static_cast<bool*>(nullptr), "", "");
   for (const Command& command : all) {
     CLI::App* const sub = app.add_subcommand(command.name, command.summary);
     sub->footer(command.examples);
-    inside_->declared.push_back(command.declare(context));
-    declare(*sub, inside_->declared.back().parameters, context);
+    if (words.empty() || words[0] != command.name) continue;
+    asked = sub;
+    parsed.command = &command;
+    parsed.declared = declared_of(command, context);
+    declare(*sub, parsed.declared.parameters, *context.reading);
   }
-}
-
-CommandLine::~CommandLine() = default;
-
-std::string CommandLine::help() const { return inside_->app.help(); }
-
-std::vector<OptionFacts> CommandLine::options_of(int command) const {
-  const CLI::App& app =
-      command < 0
-          ? inside_->app
-          : *inside_->app.get_subcommand(inside_->commands[static_cast<std::size_t>(command)].name);
-  std::vector<OptionFacts> all;
-  for (const CLI::Option* option : app.get_options()) all.push_back(facts_of(*option));
-  return all;
-}
-
-CommandLine::Parsed CommandLine::parse(const std::vector<std::string>& words) {
-  CLI::App& app = inside_->app;
-  Parsed parsed;
-  std::string name;
-  ask::Parameters rows;
-  for (std::size_t i = 0; i < inside_->commands.size(); ++i) {
-    if (words.empty() || words[0] != inside_->commands[i].name) continue;
-    parsed.command = static_cast<int>(i);
-    name = words[0];
-    rows = inside_->declared[i].parameters;
+  if (words.empty()) {
+    std::fputs(app.help().c_str(), stderr);
+    parsed.status = status_of(ErrorCode::invalid_argument).exit;
+    return parsed;
   }
-  const UsageOf usage{name, options_of(parsed.command), words};
+  const ask::Parameters& rows = parsed.declared.parameters;
+  const UsageOf usage{parsed.command == nullptr ? "" : words[0], rows, words};
   if (const std::string word = one_hyphen_too_few(usage); !word.empty()) {
     parsed.fault = word + " has one hyphen; the option is -" + word;
     return parsed;
@@ -207,27 +209,22 @@ CommandLine::Parsed CommandLine::parse(const std::vector<std::string>& words) {
   try {
     app.parse(
         std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 wants the last first
-    inside_->reading->check(rows);
+    context.reading->check(rows);
   } catch (const CLI::Success& success) {  // --help, --version
     parsed.status = app.exit(success);
   } catch (const CLI::ParseError& error) {
-    const CLI::App& of = parsed.command < 0 ? app : *app.get_subcommand(name);
     parsed.fault =
-        usage_fault({name, options_of(parsed.command), words}, error.what(), of.remaining());
+        usage_fault(usage, error.what(), given_in(*asked, error.what()), asked->remaining());
     if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return parsed;
     try {
-      inside_->reading->check(rows);
+      context.reading->check(rows);
     } catch (const Error& missing) {
-      parsed.fault = usage_fault(usage, missing.what(), {});
+      parsed.fault = usage_fault(usage, missing.what());
     }
   } catch (const Error& error) {
-    parsed.fault = usage_fault(usage, error.what(), {});
+    parsed.fault = usage_fault(usage, error.what());
   }
   return parsed;
-}
-
-int CommandLine::run(int command) const {
-  return inside_->declared[static_cast<std::size_t>(command)].run();
 }
 
 }  // namespace ptin::tools

@@ -4,8 +4,6 @@
 // this one.
 #pragma once
 
-#include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,57 +13,31 @@
 
 namespace ptin::tools {
 
-/// An option or an argument as it is told: in help, by the completion script, in the manual page, and
-/// in sentences about wrong use.
-struct OptionFacts {
-  std::vector<std::string> names;  ///< "-o", "--output"; of an argument its name alone.
-  bool is_argument = false;
-  std::string metavar;  ///< Of its values; empty: a flag, or an argument with no other name.
-  int least_values = 0, most_values = 0;
-  std::string help;
-  std::vector<std::string> given;  ///< Its values, once words were read.
-
-  /// The first long name, or else the only one: "--output", "-k", "FILE".
-  [[nodiscard]] const std::string& name() const {
-    for (const std::string& name : names) {
-      if (name.starts_with("--")) return name;
-    }
-    return names.front();
-  }
-};
-/// Puts the words behind a subcommand that has these parameters where its rows say.
-/// @throws Error invalid_argument  they mean nothing
-void read_words(const ask::Parameters& rows, const std::vector<std::string>& words);
+/// The names of a parameter: "-o" and "--output"; of an argument its name alone.
+[[nodiscard]] std::vector<std::string> names_of(const ask::Parameter& row);
+[[nodiscard]] bool is_argument(const ask::Parameter& row);
+/// The value's name and which values there are: "TEXT:{stars,splits}", "N in [1 - 1024]"; empty of a
+/// flag, and of an argument with no other name.
+[[nodiscard]] std::string values_of(const ask::Parameter& row);
 /// One line about the program.
 [[nodiscard]] const char* program_summary() noexcept;
 
-/// A command line: subcommands with their options.
-class CommandLine {
- public:
-  /// @param all  Outlive this, as does `context`.
-  explicit CommandLine(Context& context, std::span<const Command> all = commands());
-  ~CommandLine();
-  CommandLine(const CommandLine&) = delete;
-  CommandLine& operator=(const CommandLine&) = delete;
+/// A subcommand with the parameters of the command line that it has and that every one has: --help
+/// first, --json and --quiet last.
+/// @param context  Outlives what is declared.
+[[nodiscard]] Declared declared_of(const Command& command, Context& context);
+/// Puts the words behind a subcommand that has these parameters where its rows say.
+/// @throws Error invalid_argument  they mean nothing
+void read_words(ask::Parameters rows, const std::vector<std::string>& words);
 
-  /// The help of the program.
-  [[nodiscard]] std::string help() const;
-  /// What became of words.
-  struct Parsed {
-    int command = -1;           ///< Its number among the subcommands.
-    std::string fault;          ///< Not empty: why the words mean nothing.
-    std::optional<int> status;  ///< Help or the version was printed.
-  };
-  /// Reads words; their values go where the options of the subcommand have them.
-  [[nodiscard]] Parsed parse(const std::vector<std::string>& words);
-  /// The options of a subcommand in the order of its help, with what was given; -1: of the program.
-  [[nodiscard]] std::vector<OptionFacts> options_of(int command) const;
-  /// Runs a subcommand whose words were read.  @throws Error
-  int run(int command) const;
-
- private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
+/// What became of the words of a command line.
+struct ParsedWords {
+  const Command* command = nullptr;  ///< Null: they name none.
+  Declared declared;                 ///< Its values are where its rows have them.
+  std::string fault;                 ///< Not empty: why the words mean nothing.
+  std::optional<int> status;         ///< Help or the version was printed.
 };
+[[nodiscard]] ParsedWords parse_words(const std::vector<std::string>& words, Context& context,
+                                      std::span<const Command> all = commands());
 
 }  // namespace ptin::tools

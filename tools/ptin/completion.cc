@@ -15,16 +15,15 @@ namespace ptin::tools {
 
 std::string bash_script(std::span<const Command> all) {
   Context context;
-  const CommandLine line(context, all);
-  int number = 0;
   std::string names;
   std::string cases;
   for (const Command& command : all) {
     names.append(names.empty() ? "" : " ").append(command.name);
     cases.append("    ").append(command.name).append(") words=\"");
-    for (const OptionFacts& option : line.options_of(number++)) {
-      if (option.is_argument) continue;
-      for (const std::string& name : option.names) cases.append(" ").append(name);
+    const Declared declared = declared_of(command, context);
+    for (const ask::Parameter& row : declared.parameters) {
+      if (is_argument(row)) continue;
+      for (const std::string& name : names_of(row)) cases.append(" ").append(name);
     }
     cases.append("\" ;;\n");
   }

@@ -61,17 +61,15 @@ void check_input(const std::string& input, const std::string& output,
 
 }  // namespace
 
-void check_inputs_are_kept(std::span<const OptionFacts> options) {
-  const auto output = std::find_if(options.begin(), options.end(), [](const OptionFacts& option) {
-    return option.name() == "--output" && !option.given.empty();
-  });
-  if (output == options.end()) return;
-  const std::string path = output->given.back();
+void check_inputs_are_kept(const ask::Reading& reading) {
+  const auto output = reading.given().find("output");
+  if (output == reading.given().end()) return;
+  const std::string path = output->second.back();
   const std::optional<FileIdentity> identity = path == "-" ? std::nullopt : identity_of(path);
   if (!identity) return;
-  for (const OptionFacts& option : options) {
-    if (&option == &*output) continue;
-    for (const std::string& value : option.given) {
+  for (const auto& [name, values] : reading.given()) {
+    if (name == "output") continue;
+    for (const std::string& value : values) {
       if (is_number(value)) continue;
       check_input(value, path, *identity);
       for (const std::string& file : files_behind(value)) check_input(file, path, *identity);

@@ -35,14 +35,16 @@ std::string on_one_line(std::string text) {
   return text;
 }
 
-void add_option(const OptionFacts& option, std::string& page) {
+void add_option(const ask::Parameter& row, std::string& page) {
   std::string names;
-  for (const std::string& name : option.names) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : names_of(row)) names += (names.empty() ? "" : ", ") + name;
   page.append(".TP\n.B ").append(escaped(names));
-  if (!option.metavar.empty() && !option.is_argument) {
-    page.append(" \\fI").append(escaped(option.metavar)).append("\\fR");
+  if (const std::string values = values_of(row); !values.empty() && !is_argument(row)) {
+    page.append(" \\fI").append(escaped(values)).append("\\fR");
   }
-  page.append("\n").append(escaped(on_one_line(option.help))).append("\n");
+  page.append("\n")
+      .append(escaped(on_one_line(ask::help_at(row, ask::Door::kProgram))))
+      .append("\n");
 }
 
 /// Adds the footer of a subcommand: paragraphs, then examples line by line.
@@ -60,7 +62,6 @@ void add_footer(const std::string& footer, std::string& page) {
 
 std::string man_page(std::span<const Command> all) {
   Context context;
-  const CommandLine line(context, all);
   std::string page = ".TH PTIN 1 \"\" \"ptin " PTIN_VERSION "\" \"User Commands\"\n";
   page.append(".SH NAME\nptin \\- ").append(escaped(program_summary())).append("\n");
   page.append(".SH SYNOPSIS\n.B ptin\n\\fISUBCOMMAND\\fR [\\fIOPTION\\fR...]\n");
@@ -69,13 +70,13 @@ std::string man_page(std::span<const Command> all) {
     page.append(".TP\n.B ").append(escaped(command.name)).append("\n");
     page.append(escaped(command.summary)).append("\n");
   }
-  int number = 0;
   for (const Command& command : all) {
     page.append(".SH \"PTIN ");
     for (const char* c = command.name; *c != '\0'; ++c)
       page += *c >= 'a' && *c <= 'z' ? static_cast<char>(*c - 'a' + 'A') : *c;
     page.append("\"\n").append(escaped(command.summary)).append(".\n");
-    for (const OptionFacts& option : line.options_of(number++)) add_option(option, page);
+    const Declared declared = declared_of(command, context);
+    for (const ask::Parameter& row : declared.parameters) add_option(row, page);
     add_footer(command.examples, page);
   }
   page.append(".SH \"EXIT STATUS\"\n").append(escaped(on_one_line(exit_statuses()))).append("\n");

@@ -30,9 +30,12 @@ std::string did_you_mean(const std::string& name) {
   return name.empty() ? "" : "; did you mean " + name + "?";
 }
 
+std::string name_of(const ask::Parameter& row) { return ask::name_at(row, ask::Door::kProgram); }
+
 bool has_option(const UsageOf& usage, const std::string& name) {
-  return std::any_of(usage.options.begin(), usage.options.end(), [&](const OptionFacts& option) {
-    return std::find(option.names.begin(), option.names.end(), name) != option.names.end();
+  return std::any_of(usage.rows.begin(), usage.rows.end(), [&](const ask::Parameter& row) {
+    const std::vector<std::string> names = names_of(row);
+    return std::find(names.begin(), names.end(), name) != names.end();
   });
 }
 
@@ -52,8 +55,8 @@ std::string unknown_option(const UsageOf& usage) {
 
 std::string nearest_option(const UsageOf& usage, const std::string& word) {
   std::vector<std::string> names;
-  for (const OptionFacts& option : usage.options) {
-    for (const std::string& name : option.names) {
+  for (const ask::Parameter& row : usage.rows) {
+    for (const std::string& name : names_of(row)) {
       if (name.starts_with("--")) names.push_back(name);
     }
   }
@@ -67,28 +70,28 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 /// Names of the values of an option: "X Y" of the argument X_Y and of --point.
-std::string names_of_values(const OptionFacts& option) {
-  const bool has_names = !option.is_argument || option.metavar.find(' ') != std::string::npos;
-  std::string names = has_names ? option.metavar : option.name();
+std::string names_of_values(const ask::Parameter& row) {
+  const std::string values = values_of(row);
+  const bool has_names = !is_argument(row) || values.find(' ') != std::string::npos;
+  std::string names = has_names ? values : name_of(row);
   std::replace(names.begin(), names.end(), '_', ' ');
   return names;
 }
 
 /// "X Y are 2 numbers with a space between".
-std::string values_wanted(const OptionFacts& option) {
-  const int count = option.least_values;
-  const std::string names = names_of_values(option);
-  std::string text = option.is_argument ? names : option.name();
-  if (count == 1 && option.most_values > 1) return text + " takes one value or more";
+std::string values_wanted(const ask::Parameter& row) {
+  const std::uint32_t count = row.least_values;
+  const std::string names = names_of_values(row);
+  std::string text = is_argument(row) ? names : name_of(row);
+  if (count == 1 && (row.repeats || row.most_values > 1)) return text + " takes one value or more";
   if (count <= 1) return text + " takes one value" + (names == text ? "" : ", " + names);
   const std::string how_many = std::to_string(count) + (count == 2 ? " values with a space between"
                                                                    : " values with spaces between");
-  return option.is_argument ? text + " are " + how_many
-                            : text + " takes " + how_many + ", " + names;
+  return is_argument(row) ? text + " are " + how_many : text + " takes " + how_many + ", " + names;
 }
 
 /// "1,2" where two values are wanted is one word: tells how to write it.
-std::string without_commas(const std::string& word, int count) {
+std::string without_commas(const std::string& word, std::uint32_t count) {
   const auto commas = std::count(word.begin(), word.end(), ',');
   if (commas + 1 != count) return {};
   std::string apart = word;
@@ -96,19 +99,18 @@ std::string without_commas(const std::string& word, int count) {
   return "; write " + apart;
 }
 
-std::string wrong_count(const OptionFacts& option) {
-  const std::vector<std::string>& given = option.given;
-  std::string text = values_wanted(option);
+std::string wrong_count(const ask::Parameter& row, const std::vector<std::string>& given) {
+  std::string text = values_wanted(row);
   if (given.empty()) return text + ", and fewer were given";
   text += ", and " + std::to_string(given.size()) + (given.size() == 1 ? " was" : " were") +
           " given: " + joined(given);
-  return given.size() == 1 ? text + without_commas(given[0], option.least_values) : text;
+  return given.size() == 1 ? text + without_commas(given[0], row.least_values) : text;
 }
 
-/// The option whose name a message of CLI11's begins with.
-const OptionFacts* option_in(const UsageOf& usage, const std::string& message) {
-  for (const OptionFacts& option : usage.options) {
-    if (message.starts_with(option.name() + ": ")) return &option;
+/// The row whose name a message of CLI11's begins with.
+const ask::Parameter* row_in(const UsageOf& usage, const std::string& message) {
+  for (const ask::Parameter& row : usage.rows) {
+    if (message.starts_with(name_of(row) + ": ")) return &row;
   }
   return nullptr;
 }
@@ -116,8 +118,8 @@ const OptionFacts* option_in(const UsageOf& usage, const std::string& message) {
 /// "FILE X_Y" of `ptin locate FILE X Y`.
 std::string arguments_of(const UsageOf& usage) {
   std::string all;
-  for (const OptionFacts& option : usage.options) {
-    if (option.is_argument) all += " " + names_of_values(option);
+  for (const ask::Parameter& row : usage.rows) {
+    if (is_argument(row)) all += " " + names_of_values(row);
   }
   return all;
 }
@@ -132,13 +134,14 @@ std::string too_many_words(const UsageOf& usage, const std::string& message,
 
 /// A message of CLI11's in our words; those that are sentences stay as they are.
 std::string in_our_words(const UsageOf& usage, const std::string& message,
+                         const std::vector<std::string>& given,
                          const std::vector<std::string>& extra) {
   if (message.find(" not expected: ") != std::string::npos) {
     return too_many_words(usage, message, extra);
   }
-  const OptionFacts* const option = option_in(usage, message);
+  const ask::Parameter* const row = row_in(usage, message);
   const bool is_count = message.find(" required ") != std::string::npos;
-  if (option != nullptr && is_count) return wrong_count(*option);
+  if (row != nullptr && is_count) return wrong_count(*row, given);
   return message;
 }
 
@@ -165,12 +168,13 @@ std::string unknown_subcommand_sentence(const std::string& word) {
 }
 
 std::string usage_fault(const UsageOf& usage, std::string message,
+                        const std::vector<std::string>& given,
                         const std::vector<std::string>& extra) {
   // CLI11 takes an option that it does not know, and what follows it, for further values of other
   // options: so those are looked for first.
   if (const std::string word = unknown_option(usage); !word.empty())
     return "there is no option " + word + did_you_mean(nearest_option(usage, word));
-  message = in_our_words(usage, message, extra);
+  message = in_our_words(usage, message, given, extra);
   std::replace(message.begin(), message.end(), '\n', ' ');
   return message;
 }

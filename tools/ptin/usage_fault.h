@@ -13,8 +13,8 @@ namespace ptin::tools {
 
 /// A command line that is looked at for its fault.
 struct UsageOf {
-  std::string command;               ///< The subcommand; empty: there is none.
-  std::vector<OptionFacts> options;  ///< As far as they were read.
+  std::string command;  ///< The subcommand; empty: there is none.
+  const ask::Parameters& rows;
   std::span<const std::string> words;
 };
 
@@ -26,8 +26,10 @@ struct UsageOf {
 
 /// The fault of words that do not parse, in a sentence.
 /// @param message  CLI11's, or a sentence.
+/// @param given    The values of the option that a message begins with.
 /// @param extra    Words that nothing takes.
 [[nodiscard]] std::string usage_fault(const UsageOf& usage, std::string message,
-                                      const std::vector<std::string>& extra);
+                                      const std::vector<std::string>& given = {},
+                                      const std::vector<std::string>& extra = {});
 
 }  // namespace ptin::tools
