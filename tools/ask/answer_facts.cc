@@ -28,11 +28,10 @@ Fields<IoCounters> io_fields() {
              &IoCounters::index_nodes);
   fields.add("pages", kCount, "", "Record pages read.", &IoCounters::pages);
   fields.add("bytes_read", kCount, "bytes", "Of these pages and nodes.", &IoCounters::bytes_read);
-  fields.add(
-      "remote_rounds", kCount, "",
-      "How often the question waited for the server of a [file elsewhere](#files-elsewhere), "
-      "after its opening; 0 of other files, as the next two.",
-      &IoCounters::remote_rounds);
+  fields.add("remote_rounds", kCount, "",
+             "How often the question waited for the server of a [file "
+             "elsewhere](#files-elsewhere), after its opening; 0 of other files, as the next two.",
+             &IoCounters::remote_rounds);
   fields.add("remote_requests", kCount, "", "Ranges that it asked for.",
              &IoCounters::remote_requests);
   fields.add("remote_bytes", kCount, "bytes", "That these held.", &IoCounters::remote_bytes);

@@ -44,8 +44,7 @@ void add_detail(Parameters& rows, DetailRequest& detail, const std::string& erro
 void add_region(Parameters& rows, RegionText& region, RegionKinds kinds, Door doors) {
   if (is_at(doors, Door::kService)) {
     rows.add("bbox", &region.window, "",
-             "West, south, east, north; across the antimeridian west is larger than "
-             "east")
+             "West, south, east, north; across the antimeridian west is larger than east")
         .values(4, 6)
         .at(Door::kService)
         .like("-118.31,34.34,-118.3,34.35");
@@ -105,8 +104,8 @@ std::vector<double> levels_of(const Levels& levels, const StoreFacts& facts) {
 
 void add_curvature(Parameters& rows, double& coefficient) {
   rows.add("curvature", &coefficient, "C",
-           "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat "
-           "Earth, 1 one without refraction, 0.75 the 4/3 Earth of radio")
+           "The Earth's curvature less refraction: GDAL's coefficient; 0 is a flat Earth, 1 one "
+           "without refraction, 0.75 the 4/3 Earth of radio")
       .within({.least = 0, .most = 1})
       // Air that bends light upwards has more than 1.
       .within_over_http(kNotNegative)
@@ -117,8 +116,8 @@ void add_curvature(Parameters& rows, double& coefficient) {
           "refraction",
           [&coefficient](const std::string& text) { coefficient = coefficient_of_factor(text); },
           "K",
-          "Instead: how many times as long the Earth's radius is taken for "
-          "refraction, as 4/3, which is usual for radio links (--curvature 0.75)")
+          "Instead: how many times as long the Earth's radius is taken for refraction, as 4/3, "
+          "which is usual for radio links (--curvature 0.75)")
       .excluding("curvature")
       .at(Door::kProgram);
 }

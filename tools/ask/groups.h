@@ -62,10 +62,9 @@ void add_by(Parameters& rows, AnswerBy& by);
 /// --threads. 0: as many as the process may use.
 void add_threads(Parameters& rows, int& threads, std::string help, double most = 1024);
 /// --memory. None: the program chooses.
-Parameter& add_memory(Parameters& rows, std::optional<std::uint64_t>& memory,
-                      std::string help =
-                          "Memory that the answer may take, as 512M or 2G (default "
-                          "4G)");
+Parameter& add_memory(
+    Parameters& rows, std::optional<std::uint64_t>& memory,
+    std::string help = "Memory that the answer may take, as 512M or 2G (default 4G)");
 
 /// A format of an answer, as `f` names it.
 struct Format {

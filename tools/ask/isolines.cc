@@ -14,12 +14,11 @@ void add_question(Parameters& rows, IsolineQuestion& question) {
   add_levels(rows, question.levels, "Heights of the lines, instead of an interval",
              "Every multiple of D, from the base", Door::kBoth);
   add_region(rows, question.region, RegionKinds::kWithInside, Door::kBoth);
-  add_detail(rows, request.detail, "",
-             "The isolines of the TIN of the terrain's N most important vertices, instead of an "
-             "error");
+  add_detail(
+      rows, request.detail, "",
+      "The isolines of the TIN of the terrain's N most important vertices, instead of an error");
   rows.add("max-lines", &request.most_lines, "N",
-           "Refuse, before anything is written, when there are more lines, or "
-           "polygons")
+           "Refuse, before anything is written, when there are more lines, or polygons")
       .with_default()
       .at(Door::kProgram);
   add_crs(rows);

@@ -19,10 +19,9 @@ Json triangle_json(const LocatedRow& row) {
 
 void add_question(Parameters& rows, LocateRequest& request) {
   add_coords(rows, "Positions as WKT, POINT or MULTIPOINT", "POINT(-118.3 34.34)");
-  add_detail(
-      rows, request.detail, "; heights come with intervals",
-      "The TIN of the terrain's N most important vertices, instead of an error; heights come "
-      "with intervals");
+  add_detail(rows, request.detail, "; heights come with intervals",
+             "The TIN of the terrain's N most important vertices, instead of an error; heights "
+             "come with intervals");
   add_crs(rows);
 }
 
@@ -57,8 +56,7 @@ Fields<LocatedRow> located_fields() {
              &Row::id);
   fields.add(
       "triangle", "array or null", "",
-      "Its corners, counter-clockwise from the southernmost, as `[x, y, height]`; no height: "
-      "null.",
+      "Its corners, counter-clockwise from the southernmost, as `[x, y, height]`; no height: null.",
       Told::kObject, triangle_json);
   return fields;
 }

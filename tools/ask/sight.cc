@@ -99,8 +99,8 @@ void add_question(Parameters& rows, SightQuestion& question) {
   rows.add(
           "frequency", [&question](const std::string& text) { question.hertz = hertz_of(text); },
           "F",
-          "Measure the first Fresnel zone at this frequency, as 5.8GHz, 5800MHz or "
-          "5.8e9 (hertz); 1 MHz at least")
+          "Measure the first Fresnel zone at this frequency, as 5.8GHz, 5800MHz or 5.8e9 (hertz); "
+          "1 MHz at least")
       .excluding("verdict")
       .bound(Door::kProgram)
       .like("5.8e9");
@@ -108,8 +108,7 @@ void add_question(Parameters& rows, SightQuestion& question) {
              "Leave out what is not among the terrain's N most important vertices, instead of an "
              "error; may answer undecided");
   rows.add("budget", &request.budget, "N",
-           "Stop after this many stars (--by splits: records) for a pair; may answer "
-           "undecided")
+           "Stop after this many stars (--by splits: records) for a pair; may answer undecided")
       .at(Door::kProgram);
   add_crs(rows);
 }
@@ -140,14 +139,13 @@ SightRow::SightRow(const SightResult& line,
 Fields<SightRow> sight_fields() {
   using Row = SightRow;
   Fields<Row> fields;
-  fields.add(
-      "verdict", "string or null", "",
-      "`visible`, `hidden` or `undecided`; null: heights are above ground, and an end has none "
-      "below it.",
-      Told::kObject, [](const Row& r) {
-        const bool is_defined = r.result.verdict != SightVerdict::kUndefined;
-        return is_defined ? Json(tools::name_of(r.result.verdict)) : Json();
-      });
+  fields.add("verdict", "string or null", "",
+             "`visible`, `hidden` or `undecided`; null: heights are above ground, and an end has "
+             "none below it.",
+             Told::kObject, [](const Row& r) {
+               const bool is_defined = r.result.verdict != SightVerdict::kUndefined;
+               return is_defined ? Json(tools::name_of(r.result.verdict)) : Json();
+             });
   fields.add("verdict", "string", "", "The same; `undefined` in the place of null.",
              Told::kNoObject, [](const Row& r) { return tools::name_of(r.result.verdict); });
   fields.add("ends", "array of strings", "", "The state of the ground below each end.",
@@ -171,11 +169,10 @@ Fields<SightRow> sight_fields() {
              [](const Row& r) { return r.result.void_length; });
   fields.add("fresnel.ratio", "number or null", "", "That clearance over that radius.",
              [](const Row& r) { return r.result.fresnel_ratio; });
-  add_place(
-      fields, "fresnel", "object",
-      "With `--frequency`: the least clearance over the radius of the first Fresnel zone, ends "
-      "left out.",
-      &Row::fresnel, {"x", "y", "distance", "height"});
+  add_place(fields, "fresnel", "object",
+            "With `--frequency`: the least clearance over the radius of the first Fresnel zone, "
+            "ends left out.",
+            &Row::fresnel, {"x", "y", "distance", "height"});
   fields.add("certified_deviation", "number or null", kHeightUnit,
              "What is not known of the surface where the line is undecided; 0: nothing.",
              Told::kObject, [](const Row& r) { return r.result.certified_deviation; });
@@ -183,10 +180,10 @@ Fields<SightRow> sight_fields() {
              [](const Row& r) { return r.result.exact; });
   fields.add("cost", "object", "", "What the pair took.", Told::kProgram & Told::kObject,
              [](const Row& r) { return cost_json(r.result.cost); });
-  fields.add("id", "string", "",
-             "Of each of `pairs`: its column or attribute (`--id`); left out where the input has "
-             "none.",
-             Told::kProgram, &Row::id);
+  fields.add(
+      "id", "string", "",
+      "Of each of `pairs`: its column or attribute (`--id`); left out where the input has none.",
+      Told::kProgram, &Row::id);
   return fields;
 }
 

@@ -41,12 +41,11 @@ void add_question(Parameters& rows, ViewshedQuestion& question) {
       .in(Unit::kHeight)
       .like("0");
   add_curvature(rows, request.curvature.coefficient);
-  add_detail(
-      rows, request.detail,
-      " at the radius, less towards the observer; where the full TIN may answer otherwise, a "
-      "target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
-      "The TIN of the terrain's N most important vertices, and more towards the observer, "
-      "instead of an error; undecided targets as with an error");
+  add_detail(rows, request.detail,
+             " at the radius, less towards the observer; where the full TIN may answer otherwise, "
+             "a target is undecided (192 seems visible, 64 hidden; `certain` is 0)",
+             "The TIN of the terrain's N most important vertices, and more towards the observer, "
+             "instead of an error; undecided targets as with an error");
   add_crs(rows);
 }
 

@@ -97,8 +97,7 @@ Declared declare_bench(Context& context) {
                    "Most threads to ask at once (default: those that the process may use)", 4096);
   ask::add_memory(rows, options->memory);
   rows.add("tmp", &request.temporary_folder, "DIR",
-           "Folder for libspatialindex's tree, which is removed again (default: beside "
-           "FILE)");
+           "Folder for libspatialindex's tree, which is removed again (default: beside FILE)");
   add_output(rows, options->out, "Draw the figures (" + known_picture_extensions() + ")", false,
              "PLOT");
   declared.run = [options, &context] { return run_bench(*options, context); };

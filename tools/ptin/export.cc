@@ -366,9 +366,8 @@ ask::Parameters parameters_of(ExportOptions& options) {
            "The format: " + known_formats() + " (default: by the extension)")
       .spelled("--format,--of");
   rows.add("pixel-size", &options.pixel_size, "SIZE",
-           "Rasters: the size of a pixel, one number or two, in map units, or over "
-           "ground as 90m, 0.1km or 300ft, converted at the middle of the window "
-           "(default: the source raster's)")
+           "Rasters: the size of a pixel, one number or two, in map units, or over ground as 90m, "
+           "0.1km or 300ft, converted at the middle of the window (default: the source raster's)")
       .values(1, 2);
   add_pixel_content(rows, options.content);
   add_model(rows, options.model);

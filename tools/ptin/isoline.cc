@@ -251,19 +251,18 @@ ask::Parameters parameters_of(IsolineOptions& options) {
   ask::add_by(rows, options.by);
   rows.add("3d", &options.z, "", "Points carry the height of their line");
   rows.add("polygons", &options.polygons, "",
-           "Polygons between the levels, with elev_min and elev_max, instead of "
-           "lines")
+           "Polygons between the levels, with elev_min and elev_max, instead of lines")
       .spelled("-p,--polygons")
       .excluding("3d");
   add_output(rows, options.out,
              "The layer to write; its extension chooses the format: " + known_isoline_extensions() +
                  "; - is GeoJSON on stdout");
-  ask::add_memory(rows, options.memory,
-                  "Memory for the extraction, as 512M or 2G (default 4G); what does "
-                  "not fit goes to --tmp");
+  ask::add_memory(
+      rows, options.memory,
+      "Memory for the extraction, as 512M or 2G (default 4G); what does not fit goes to --tmp");
   ask::add_threads(rows, options.threads,
-                   "Threads (default: one a processor that affinity and cgroups "
-                   "leave this process); the lines are the same for any number");
+                   "Threads (default: one a processor that affinity and cgroups leave this "
+                   "process); the lines are the same for any number");
   return rows;
 }
 

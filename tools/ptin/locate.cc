@@ -76,9 +76,8 @@ ask::Parameters parameters_of(LocateOptions& options) {
   add_terrain(rows, options.terrain, true);
   rows.add("x_y", &options.point, "X Y", "A point").spelled("X_Y").in(ask::Unit::kMap).values(2, 2);
   rows.add("points", &options.points, "FILE",
-           "Points: text with x and y in the first columns, or in those that a header "
-           "names so (- reads standard input), or a vector file (transformed to the "
-           "terrain's CRS)");
+           "Points: text with x and y in the first columns, or in those that a header names so (- "
+           "reads standard input), or a vector file (transformed to the terrain's CRS)");
   add_input_choice(rows, options.choice, "points", "x, y");
   ask::add_question(rows, options.request);
   ask::add_by(rows, options.by);

@@ -23,14 +23,11 @@ double reduction_of(const std::string& text) {
 
 void add_model(ask::Parameters& rows, ModelOptions& options) {
   rows.add("solid", &options.base, "BASE",
-           ".stl, .glb: a closed solid to print, with walls down to a flat base at "
-           "this height")
+           ".stl, .glb: a closed solid to print, with walls down to a flat base at this height")
       .in(ask::Unit::kHeight);
   rows.add(
       "scale", [&options](const std::string& text) { options.reduction = reduction_of(text); },
-      "1:N",
-      ".stl, .glb: a model at this scale, as 1:25000; an STL is in millimetres "
-      "then");
+      "1:N", ".stl, .glb: a model at this scale, as 1:25000; an STL is in millimetres then");
   rows.add("exaggeration", &options.exaggeration, "F",
            ".stl, .glb: heights are so many times as large")
       .within(ask::kPositive)

@@ -15,17 +15,15 @@ constexpr std::array<const char*, 4> kNames = {"height", "slope", "aspect", "hil
 
 void add_pixel_content(ask::Parameters& rows, PixelContentOptions& options) {
   rows.add("what", &options.what, "WHAT",
-           "Rasters: height, slope, aspect (degrees clockwise from north) or hillshade "
-           "of the triangle under the pixel's centre")
+           "Rasters: height, slope, aspect (degrees clockwise from north) or hillshade of the "
+           "triangle under the pixel's centre")
       .of({kNames.begin(), kNames.end()})
       .with_default();
   rows.add("slope-unit", &options.slope_unit, "UNIT",
-           "degree or percent, of --what slope and of the field slope (default "
-           "degree)")
+           "degree or percent, of --what slope and of the field slope (default degree)")
       .of({"degree", "percent"});
   rows.add("azimuth", &options.azimuth, "A",
-           "Hillshades: where the light comes from, in degrees clockwise from north "
-           "(default 315)")
+           "Hillshades: where the light comes from, in degrees clockwise from north (default 315)")
       .within({.least = 0, .most = 360});
   rows.add("altitude", &options.altitude, "A",
            "Hillshades: how high the light stands, in degrees (default 45)")

@@ -210,8 +210,8 @@ void add_input_choice(ask::Parameters& rows, InputChoice& choice, std::string_vi
   rows.add("layer", &choice.layer, "NAME", "The layer, where several of a file would do")
       .needing(source);
   rows.add("id", &choice.id, "NAME",
-           "The column or attribute that goes along into the answer as `id` (default: "
-           "the first that is no coordinate)")
+           "The column or attribute that goes along into the answer as `id` (default: the first "
+           "that is no coordinate)")
       .needing(source);
 }
 

@@ -176,8 +176,8 @@ ask::Parameters parameters_of(ProfileOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
   rows.add("line", &options.line, "WKT_OR_FILE",
-           "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector "
-           "file (transformed to the terrain's CRS)")
+           "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
+           "(transformed to the terrain's CRS)")
       .required_at(ask::Door::kBoth);
   add_input_choice(rows, options.choice, "line", "");
   ask::add_question(rows, options.request);

@@ -23,9 +23,9 @@ namespace ptin::tools {
 
 void add_terrain(ask::Parameters& rows, TerrainOptions& options, bool has_index,
                  const std::string& tmp_help) {
-  rows.add("file", &options.file, "",
-           "The .ptin file, or its URL: https, http, s3, gs, az (tools/API.md, "
-           "\"Files elsewhere\")")
+  rows.add(
+          "file", &options.file, "",
+          "The .ptin file, or its URL: https, http, s3, gs, az (tools/API.md, \"Files elsewhere\")")
       .spelled("FILE")
       .required_at(ask::Door::kBoth);
   rows.add("no-mmap", &options.no_mmap, "",

@@ -162,11 +162,11 @@ ask::Parameters parameters_of(RefineOptions& options) {
   ask::add_region(rows, options.region, ask::RegionKinds::kAll, ask::Door::kProgram);
   ask::add_detail(
       rows, options.request.detail, "",
-      "A mesh of exactly this many vertices, the most important ones of the region; not "
-      "written are those in void triangles alone, and what --clip and --cut leave out");
+      "A mesh of exactly this many vertices, the most important ones of the region; not written "
+      "are those in void triangles alone, and what --clip and --cut leave out");
   rows.add("triangles", &options.request.triangles, "N",
-           "The mesh of the most important vertices that has at most this many "
-           "triangles, void ones included; --clip and --cut leave some of them out")
+           "The mesh of the most important vertices that has at most this many triangles, void "
+           "ones included; --clip and --cut leave some of them out")
       .excluding("error vertices");
   rows.add("clip", &options.clip, "", "Keep only the triangles that meet the region, whole");
   rows.add("cut", &options.cut, "", "Cut the triangles at the border of the region")

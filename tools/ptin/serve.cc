@@ -165,19 +165,16 @@ ask::Parameters parameters_of(ServeCommand& command) {
   ask::add_threads(rows, command.threads,
                    "Questions of each lane (points, tiles, sweeps) that are computed at once");
   rows.add("memory", &command.memory, "SIZE",
-           "Memory of all bodies, questions and answers; as much as fills all threads "
-           "without it");
+           "Memory of all bodies, questions and answers; as much as fills all threads without it");
   rows.add("limit", &command.limits, "NAME=VALUE", limits_help()).repeated();
   rows.add("cors", &command.cors, "ORIGIN", "Web pages of this origin may ask; * for all");
   rows.add("token-file", &command.token_file, "FILE",
-           "Questions need the token of its first line, as Authorization: Bearer "
-           "TOKEN, or once as ?token=TOKEN in a browser");
+           "Questions need the token of its first line, as Authorization: Bearer TOKEN, or once as "
+           "?token=TOKEN in a browser");
   rows.add("metrics", &command.metrics, "WHO",
-           "Who reads /metrics: open, token, closed; without it whoever may ask "
-           "questions");
+           "Who reads /metrics: open, token, closed; without it whoever may ask questions");
   rows.add("trusted-proxy", &command.trusted_proxies, "ADDRESS[/BITS]",
-           "A proxy that is believed its X-Forwarded-For and -Proto; may be given "
-           "often")
+           "A proxy that is believed its X-Forwarded-For and -Proto; may be given often")
       .repeated();
   rows.add("files", &command.offers_files, "", "Give out the files themselves, by ranges");
   return rows;

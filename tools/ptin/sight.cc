@@ -141,14 +141,12 @@ ask::Parameters parameters_of(SightOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, true);
   rows.add("pair", &options.pair, "X1 Y1 H1 X2 Y2 H2",
-           "The two ends in map units, each with its height above ground, in the "
-           "height's unit")
+           "The two ends in map units, each with its height above ground, in the height's unit")
       .spelled("PAIR")
       .values(6, 6);
   rows.add("pairs", &options.pairs, "FILE",
-           "Text with such six numbers in each row, or with a header that names x1 y1 "
-           "h1 x2 y2 h2 (- reads standard input), or a vector file of lines with "
-           "heights at their ends");
+           "Text with such six numbers in each row, or with a header that names x1 y1 h1 x2 y2 h2 "
+           "(- reads standard input), or a vector file of lines with heights at their ends");
   add_input_choice(rows, options.choice, "pairs", "x1, y1, h1, x2, y2, h2");
   ask::add_question(rows, options.question);
   ask::add_by(rows, options.by);

@@ -129,9 +129,7 @@ void add_serving(ask::Parameters& rows, Serving& serving, bool is_had) {
       .in(ask::Unit::kHeight)
       .values(1, 1000);
   rows.add(is_had ? "have-splits" : "splits", &serving.splits, "N",
-           what +
-               " number of splits: only the first so many, the most important "
-               "ones");
+           what + " number of splits: only the first so many, the most important ones");
 }
 
 ask::Parameters parameters_of(StreamOptions& options) {
@@ -140,8 +138,7 @@ ask::Parameters parameters_of(StreamOptions& options) {
   add_serving(rows, options.wanted, false);
   add_serving(rows, options.had, true);
   rows.add("have", &options.have, "JSON",
-           "What the receiver was served before, as `ptin unstream --json` prints "
-           "it");
+           "What the receiver was served before, as `ptin unstream --json` prints it");
   add_output(rows, options.out, "The stream to write; - for stdout");
   rows.add("stats", &options.stats, "", "Print, on stderr, what was sent and what it cost");
   ask::add_memory(rows, options.memory);

@@ -16,9 +16,9 @@ void add_stream_isolines(ask::Parameters& rows, StreamIsolineOptions& options) {
       .in(ask::Unit::kMap)
       .values(4, 4);
   rows.add("3d", &options.z, "", "Points of isolines carry the height of their line");
-  rows.add("steps", &options.steps, "",
-           "The isolines of T0 and after every frame, told apart by the fields step, "
-           "splits and error");
+  rows.add(
+      "steps", &options.steps, "",
+      "The isolines of T0 and after every frame, told apart by the fields step, splits and error");
 }
 
 StreamIsolines::StreamIsolines(const StreamIsolineOptions& options, ask::Reading& reading,

@@ -310,11 +310,10 @@ ask::Parameters parameters_of(UnstreamOptions& options) {
       .spelled("IN")
       .values(1, ask::kAnyNumberOfValues)
       .required_at(ask::Door::kBoth);
-  add_output(
-      rows, options.out,
-      "The mesh to write, or with --level or --interval the layer of isolines; its extension "
-      "chooses the format. None: only tell what arrived",
-      false);
+  add_output(rows, options.out,
+             "The mesh to write, or with --level or --interval the layer of isolines; its "
+             "extension chooses the format. None: only tell what arrived",
+             false);
   add_stream_isolines(rows, options.isolines);
   ask::add_memory(rows, options.memory);
   return rows;

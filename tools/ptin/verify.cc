@@ -273,8 +273,8 @@ Declared declare_verify(Context& context) {
   ask::Parameters& rows = declared.parameters;
   add_terrain(rows, command->terrain, false);
   rows.add("against", &command->against, "INPUT...",
-           "The source, every input of the build: certified errors are checked at each "
-           "of its samples")
+           "The source, every input of the build: certified errors are checked at each of its "
+           "samples")
       .values(1, ask::kAnyNumberOfValues);
   rows.add("breaklines", &command->lines.breaklines, "FILE...",
            "The files of breaklines of the build: the TIN is held against them")
@@ -289,8 +289,8 @@ Declared declare_verify(Context& context) {
       .values(1, ask::kAnyNumberOfValues)
       .needing("against");
   ask::add_memory(rows, command->memory,
-                  "Memory to check the splits in, and to sort the points of the "
-                  "source in, as 512M or 2G (default 1G)");
+                  "Memory to check the splits in, and to sort the points of the source in, as 512M "
+                  "or 2G (default 1G)");
   rows.add(
       "tmp",
       [&tmp = command->tmp](const std::string& folder) {
@@ -299,9 +299,7 @@ Declared declare_verify(Context& context) {
         }
         tmp = folder;
       },
-      "DIR",
-      "Folder for temporary files of points that do not fit (default: beside "
-      "FILE)");
+      "DIR", "Folder for temporary files of points that do not fit (default: beside FILE)");
   rows.add("faults", &command->faults, "N", "List at most this many faults").with_default();
   declared.run = [command, &context] {
     const Findings findings = verify(*command, context);

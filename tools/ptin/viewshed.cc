@@ -217,14 +217,12 @@ ask::Parameters parameters_of(ViewshedOptions& options) {
   add_terrain(rows, options.terrain, true);
   ask::add_question(rows, options.question);
   rows.add("pixel-size", &options.pixel_size, "S",
-           "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, "
-           "converted at the observer (default: that of the raster it was built "
-           "from)");
-  add_output(
-      rows, options.out,
-      "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with `visible` "
-      "and `certain` (" +
-          known_vector_extensions() + ")");
+           "Side of a pixel, in map units, or over ground as 90m, 0.1km or 300ft, converted at the "
+           "observer (default: that of the raster it was built from)");
+  add_output(rows, options.out,
+             "A raster (.tif: visible 255, hidden 0, no target 128), or the vertices with "
+             "`visible` and `certain` (" +
+                 known_vector_extensions() + ")");
   ask::add_memory(rows, options.memory, "Memory for the answer, as 512M or 2G (default 4G)");
   return rows;
 }

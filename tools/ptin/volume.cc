@@ -251,8 +251,8 @@ ask::Parameters parameters_of(VolumeOptions& options) {
   ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, kAnswerKinds);
   ask::add_threads(rows, options.threads,
-                   "Threads (default: one a processor that affinity and cgroups "
-                   "leave this process); the answer is the same for any number");
+                   "Threads (default: one a processor that affinity and cgroups leave this "
+                   "process); the answer is the same for any number");
   return rows;
 }
 

@@ -35,9 +35,8 @@ void add_question(ask::Parameters& rows, AreaQuestion& question) {
   rows.front().help = "The area as WKT, POLYGON or MULTIPOLYGON";
   rows.front().example = "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))";
   rows.add(kColumns, &question.columns, "",
-           "Positions along x, both ends included; 0: those of the terrain's samples; "
-           "without it as many as make squares with those along y, or 65 along the "
-           "longer side")
+           "Positions along x, both ends included; 0: those of the terrain's samples; without it "
+           "as many as make squares with those along y, or 65 along the longer side")
       .at(ask::Door::kService)
       .like("50");
   rows.add(kRows, &question.rows, "", "The same along y").at(ask::Door::kService).like("50");

@@ -140,8 +140,8 @@ Json coverage_parameters(const std::string& unit) {
 void add_coverage_rows(ask::Parameters& rows, CoverageNames& names) {
   rows.add(
           "parameter-name", [&names](const std::string& text) { names = names_in(text); }, "",
-          "height, height_min, height_max, state, or several between commas; all "
-          "without it. CoverageJSON holds these alone, other formats all")
+          "height, height_min, height_max, state, or several between commas; all without it. "
+          "CoverageJSON holds these alone, other formats all")
       .at(ask::Door::kService)
       .like("height,state");
   ask::add_text(rows, "datetime", "Accepted and without effect: a terrain has no time");

@@ -34,16 +34,16 @@ struct ElevationQuestion {
 
 void add_question(ask::Parameters& rows, ElevationQuestion& question) {
   constexpr ask::Door kService = ask::Door::kService;
-  ask::add_text(rows, "locations",
-                "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array "
-                "of [lat, lng] too",
-                "34.34,-118.3|34.35,-118.29")
+  ask::add_text(
+      rows, "locations",
+      "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array of [lat, lng] too",
+      "34.34,-118.3|34.35,-118.29")
       .as_json();
   ask::add_text(rows, "path", "Positions instead of locations; with samples, positions along it")
       .as_json();
   rows.add("samples", &question.samples, "",
-           "Positions at equal distances along the path or the locations, by the "
-           "shortest way over ground")
+           "Positions at equal distances along the path or the locations, by the shortest way over "
+           "ground")
       .at(kService)
       .like("10");
   ask::add_text(rows, "interpolation", "Accepted and without effect: a TIN is linear", "bilinear");
