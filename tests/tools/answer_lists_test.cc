@@ -10,15 +10,7 @@
 
 #include "engine/construct/build_option_table.h"
 #include "tests/tools/program.h"
-#include "tools/ask/answer_facts.h"
-#include "tools/ask/highest.h"
-#include "tools/ask/isolines.h"
-#include "tools/ask/locate.h"
-#include "tools/ask/mesh.h"
-#include "tools/ask/profile.h"
-#include "tools/ask/sight.h"
-#include "tools/ask/viewshed.h"
-#include "tools/ask/volume.h"
+#include "tools/ask/questions.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/export_report.h"
 
@@ -36,8 +28,8 @@ template <typename Row>
 List list_of(std::string name, const Fields<Row>& fields, const std::string& prefix = {}) {
   constexpr std::size_t kColumns = 128;
   List list{std::move(name), {}};
-  for (const FieldFacts& field : documented(fields, Door::kProgram, As::kObject, prefix)) {
-    std::string all = "- `" + field.name + "`: " + std::string(field.type);
+  for (const Field& field : fields.told(Told::kProgram & Told::kDocument)) {
+    std::string all = "- `" + prefix + field.name + "`: " + std::string(field.type);
     if (!field.unit.empty()) all.append(", ").append(field.unit);
     all.append(". ").append(field.meaning);
     const char* indent = "";
@@ -116,8 +108,7 @@ TEST(AnswerLists, HaveTheRowsThatAreAdded) {
   };
   Fields<Hill> fields;
   fields.add("height", "number or null", kHeightUnit, "Of its top.", &Hill::height);
-  fields.add(
-      "note", "string", "", "Elsewhere.", [](const Hill&) { return "-"; }, Door::kService);
+  fields.add("note", "string", "", "Elsewhere.", Told::kService, [](const Hill&) { return "-"; });
   Fields<std::vector<Hill>> range;
   range.add_array("hills", "All of them.", fields, [](const auto& hills) { return &hills; });
   EXPECT_EQ(list_of("", fields, "top.").text,

@@ -35,41 +35,30 @@ struct Smoothing {
   bool is_slow = false;
 };
 
-ask::Parameters parameters_of(Smoothing& smoothing) {
-  return {ask::error_row(smoothing.error, "Certified error allowed"),
-          {.name = "reach",
-           .into = &smoothing.reach,
-           .metavar = "R",
-           .unit = ask::Unit::kGround,
-           .range = ask::kPositive,
-           .excludes = "error",
-           .example = "50",
-           .help = "How far to smooth"},
-          {.name = "rounds",
-           .into = &smoothing.rounds,
-           .metavar = "N",
-           .range = {.least = 1, .most = 9},
-           .shows_default = true,
-           .example = "2",
-           .help = "How often"},
-          {.name = "kernel",
-           .words = "-K,--kernel",
-           .into = &smoothing.kernel,
-           .metavar = "NAME",
-           .choices = {"cubic", "linear"},
-           .example = "linear",
-           .help = "Which kernel"},
-          {.name = "weights",
-           .into = &smoothing.weights,
-           .metavar = "W...",
-           .range = ask::kNotNegative,
-           .least_values = 2,
-           .most_values = 4,
-           .needs = "kernel",
-           .example = "1,2",
-           .help = "Its weights"},
-          {.name = "slow", .into = &smoothing.is_slow, .example = "true", .help = "Take time"}};
+void add_question(ask::Parameters& rows, Smoothing& smoothing) {
+  ask::add_error(rows, smoothing.error, "Certified error allowed");
+  rows.add("reach", &smoothing.reach, "R", "How far to smooth")
+      .in(ask::Unit::kGround)
+      .within(ask::kPositive)
+      .excluding("error")
+      .like("50");
+  rows.add("rounds", &smoothing.rounds, "N", "How often")
+      .within({.least = 1, .most = 9})
+      .with_default()
+      .like("2");
+  rows.add("kernel", &smoothing.kernel, "NAME", "Which kernel")
+      .spelled("-K,--kernel")
+      .of({"cubic", "linear"})
+      .like("linear");
+  rows.add("weights", &smoothing.weights, "W...", "Its weights")
+      .within(ask::kNotNegative)
+      .values(2, 4)
+      .needing("kernel")
+      .like("1,2");
+  rows.add("slow", &smoothing.is_slow, "", "Take time").like("true");
 }
+
+ask::Parameters parameters_of(Smoothing& smoothing) { return serve::rows_of(smoothing); }
 
 Smoothing& last_asked() {
   static Smoothing smoothing;
@@ -90,9 +79,17 @@ const std::vector<Command>& smooth_alone() {
 /// Why words mean nothing; empty: they do.
 std::string fault_of(std::vector<std::string> words) {
   Context context;
-  CommandLine line(context, smooth_alone());
   words.insert(words.begin(), "smooth");
-  return line.parse(words).fault;
+  return parse_words(words, context, smooth_alone()).fault;
+}
+
+/// What `ptin smooth --help` prints.
+std::string help_of_smooth() {
+  Context context;
+  ::testing::internal::CaptureStdout();
+  const ParsedWords parsed = parse_words({"smooth", "--help"}, context, smooth_alone());
+  EXPECT_EQ(parsed.status, 0);
+  return ::testing::internal::GetCapturedStdout();
 }
 
 struct Refused {
@@ -139,9 +136,7 @@ TEST(Parameter, IsReadAtBothDoors) {
 }
 
 TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
-  Context context;
-  const CommandLine line(context, smooth_alone());
-  const std::vector<OptionFacts> options = line.options_of(0);
+  const std::string help = help_of_smooth();
   const std::string manual = man_page(smooth_alone()), script = bash_script(smooth_alone());
   const std::vector<serve::Endpoint> endpoints = {{"/smooth",
                                                    "smooth",
@@ -155,8 +150,7 @@ TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
   const nlohmann::json operation = serve::openapi(endpoints, {})["paths"]["/smooth"]["get"];
   for (const std::string name : {"error", "reach", "rounds", "kernel", "weights", "slow"}) {
     SCOPED_TRACE(name);
-    const auto has_name = [&](const OptionFacts& o) { return o.name() == "--" + name; };
-    EXPECT_EQ(std::count_if(options.begin(), options.end(), has_name), 1);
+    EXPECT_NE(help.find("--" + name), std::string::npos) << help;
     EXPECT_NE(manual.find("\\-\\-" + name), std::string::npos);
     EXPECT_NE(script.find(" --" + name), std::string::npos);
     const auto& all = operation["parameters"];
@@ -244,41 +238,38 @@ struct Hill {
 };
 
 ask::Fields<Hill> hill_fields() {
-  using ask::As;
-  using ask::Door;
+  using ask::Told;
   ask::Fields<Hill> fields;
   fields.add("name", "string", "", "How it is called.", &Hill::name);
   fields.add("top.height", "number or null", "height's unit", "Of its top.", &Hill::height);
-  fields.add(
-      "bald", "boolean", "", "Nothing grows on it.",
-      [](const Hill& h) { return h.is_bald ? ask::Json(true) : ask::kLeftOut; }, Door::kProgram);
-  fields.add(
-      "note", "string", "", "For programs.", [](const Hill&) { return "-"; }, As::kObject);
+  fields.add("bald", "boolean", "", "Nothing grows on it.", Told::kProgram,
+             [](const Hill& h) { return h.is_bald ? ask::Json(true) : ask::kLeftOut; });
+  fields.add("note", "string", "", "For programs.", Told::kObject, [](const Hill&) { return "-"; });
   return fields;
 }
 
 TEST(Field, StandsInEveryFormatOfItsDoor) {
   const std::vector<Hill> hills = {{12.5, "Old, Man", true}, {std::nan(""), "x", false}};
-  using ask::As;
-  using ask::Door;
-  const auto object = [&](const Hill& hill, Door door) {
-    return ask::object_of(hill_fields().told(door, As::kObject), hill).dump();
+  using ask::Told;
+  const auto object = [&](const Hill& hill, Told door) {
+    return hill_fields().told(door & Told::kObject).object_of(hill).dump();
   };
-  EXPECT_EQ(object(hills[0], Door::kProgram),
+  EXPECT_EQ(object(hills[0], Told::kProgram),
             R"({"name":"Old, Man","top":{"height":12.5},"bald":true,"note":"-"})");
-  EXPECT_EQ(object(hills[1], Door::kProgram), R"({"name":"x","top":{"height":null},"note":"-"})");
-  EXPECT_EQ(object(hills[0], Door::kService),
+  EXPECT_EQ(object(hills[1], Told::kProgram), R"({"name":"x","top":{"height":null},"note":"-"})");
+  EXPECT_EQ(object(hills[0], Told::kService),
             R"({"name":"Old, Man","top":{"height":12.5},"note":"-"})");
   ask::LongText csv;
-  ask::add_csv(csv, hill_fields().told(Door::kProgram, As::kTableRow, {"top_height"}), hills.size(),
+  ask::add_csv(csv, hill_fields().told(Told::kProgram & Told::kTableRow), hills.size(),
                [&](std::size_t i) { return hills[i]; });
-  EXPECT_EQ(csv.take(), "top_height,name,bald\n12.5,\"Old, Man\",1\n,x,\n");
-  const auto feature = hill_fields().told(Door::kService, As::kFeature);
+  EXPECT_EQ(csv.take(), "name,top_height,bald\n\"Old, Man\",12.5,1\nx,,\n");
+  const auto feature = hill_fields().told(Told::kService & Told::kFeature);
   const auto layer = ask::layer_fields_of(feature);
   ASSERT_EQ(layer.size(), 2U);
   EXPECT_EQ(layer[1].name, "top_height");
   EXPECT_EQ(layer[1].type, VectorFile::FieldType::kReal);
-  EXPECT_EQ(std::get<std::string>(ask::layer_values_of(feature, hills[0])[0]), "Old, Man");
+  EXPECT_EQ(std::get<std::string>(ask::layer_values_of(feature.values_of(hills[0]))[0]),
+            "Old, Man");
 }
 
 /// A part of a row is an object, which may be absent; several are an array of objects.
@@ -293,7 +284,7 @@ TEST(Field, HasParts) {
   fields.add_object("highest", "object or null", "", hill, &Range::highest);
   fields.add_array("all", "", hill, &Range::all);
   const auto text = [&](const Range& range) {
-    return ask::object_of(fields.told(ask::Door::kProgram, ask::As::kObject), range).dump();
+    return fields.told(ask::Told::kProgram & ask::Told::kObject).object_of(range).dump();
   };
   EXPECT_EQ(text({}), R"({"highest":null,"all":[]})");
   EXPECT_EQ(text({Hill{3, "", false}, {{1, "", false}, {3, "", false}}}),
@@ -312,8 +303,12 @@ TEST(Field, IsInTheSchemaOfTheAnswer) {
                            http::Lane::kPoint,
                            serve::Reserves::kNothing,
                            nullptr};
-  endpoint.members = documented(hill_fields(), ask::Door::kService, ask::As::kObject, "all[].");
-  endpoint.properties = documented(hill_fields(), ask::Door::kService, ask::As::kFeature);
+  for (ask::Field field : hill_fields().told(ask::Told::kService & ask::Told::kDocument)) {
+    field.name.insert(0, "all[].");
+    endpoint.members.push_back(std::move(field));
+  }
+  const auto properties = hill_fields().told(ask::Told::kService & ask::Told::kFeature);
+  endpoint.properties.assign(properties.begin(), properties.end());
   const std::vector<serve::Endpoint> all = {endpoint};
   const auto paths = serve::openapi(all, {})["paths"];
   const auto content = paths["/hills"]["get"]["responses"]["200"]["content"];
