@@ -3,12 +3,15 @@
 // Numbers in texts, whatever the locale.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -57,33 +60,47 @@ template <class T>
   return text.empty() ? number : std::nullopt;
 }
 
-/// Which numbers are meant.
-enum class NumberRange : std::uint8_t {
-  kFinite,
-  kNotNegative,  ///< Finite, no less than 0.
-  kPositive,     ///< Finite, above 0.
-  kTolerance,    ///< No less than 0; infinite is as coarse as it can be.
-};
+/// Which numbers mean something.
+struct NumberRange {
+  static const NumberRange kFinite, kNotNegative, kPositive;
+  static const NumberRange kTolerance;  ///< No less than 0; infinite is as coarse as it can be.
+  static const NumberRange kAny;        ///< Infinities and NaN, too.
 
-[[nodiscard]] inline bool is_in(NumberRange range, double number) noexcept {
-  switch (range) {
-    case NumberRange::kNotNegative:
-      return std::isfinite(number) && number >= 0;
-    case NumberRange::kPositive:
-      return std::isfinite(number) && number > 0;
-    case NumberRange::kTolerance:
-      return number >= 0;
-    case NumberRange::kFinite:
-      break;
+  double least = std::numeric_limits<double>::lowest();
+  double most = std::numeric_limits<double>::max();
+  bool is_above = false;  ///< `least` is none itself.
+  bool has_nan = false;
+
+  [[nodiscard]] bool holds(double number) const noexcept {
+    if (std::isnan(number)) return has_nan;
+    return (is_above ? number > least : number >= least) && number <= most;
   }
-  return std::isfinite(number);
-}
+};
+inline constexpr NumberRange NumberRange::kFinite{};
+inline constexpr NumberRange NumberRange::kNotNegative{.least = 0};
+inline constexpr NumberRange NumberRange::kPositive{.least = 0, .is_above = true};
+inline constexpr NumberRange NumberRange::kTolerance{
+    .least = 0, .most = std::numeric_limits<double>::infinity()};
+inline constexpr NumberRange NumberRange::kAny{.least = -std::numeric_limits<double>::infinity(),
+                                               .most = std::numeric_limits<double>::infinity(),
+                                               .has_nan = true};
 
-/// "a finite number > 0": what a refusal says was expected.
-[[nodiscard]] inline const char* words_of(NumberRange range) noexcept {
-  constexpr const char* kWords[] = {"a finite number", "a finite number >= 0",
-                                    "a finite number > 0", "a number >= 0"};
-  return kWords[static_cast<std::size_t>(range)];
+/// "a finite number > 0", "a whole number from 1 to 9": what a refusal says was expected.
+[[nodiscard]] inline std::string words_of(const NumberRange& range, bool is_whole = false) {
+  const auto text = [](double number) {
+    std::array<char, 400> digits{};  // As many as the largest one has.
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number,
+                                   std::chars_format::fixed);
+    return std::string(digits.data(), end.ptr);
+  };
+  const bool has_least = range.least > NumberRange::kFinite.least || is_whole;
+  const bool has_most = range.most < NumberRange::kFinite.most;
+  const bool is_finite = std::isfinite(range.most) && !has_most;
+  std::string words = is_whole ? "a whole number" : is_finite ? "a finite number" : "a number";
+  if (!has_least) return words;
+  const std::string least = text(is_whole ? std::max(0.0, range.least) : range.least);
+  if (has_most) return words + " from " + least + " to " + text(range.most);
+  return words + (range.is_above ? " > " : " >= ") + least;
 }
 
 }  // namespace ptin

@@ -262,7 +262,7 @@ std::string fault_of_range(const BuildOption& option, const BuildOptions& option
   } else if (const auto* const may = std::get_if<std::optional<double> Options::*>(&option.field)) {
     number = options.*(*may);
   }
-  const bool is_sound = !number || option.noun == nullptr || is_in(option.range, *number);
+  const bool is_sound = !number || option.noun == nullptr || option.range.holds(*number);
   return is_sound ? "" : std::string(option.noun) + " must be " + words_of(option.range);
 }
 

@@ -104,7 +104,7 @@ TEST(BuildOptionTable, MakesRefusalsOfNumbers) {
       BuildOptions options;
       set_number(options, option, number);
       const std::string expected =
-          option.noun == nullptr || is_in(option.range, number)
+          option.noun == nullptr || option.range.holds(number)
               ? ""
               : std::string(option.noun) + " must be " + words_of(option.range);
       EXPECT_EQ(refusal([&] { check_options(options); }), expected) << option.name << number;

@@ -39,7 +39,7 @@ void add_question(ask::Parameters& rows, Smoothing& smoothing) {
   ask::add_error(rows, smoothing.error, "Certified error allowed");
   rows.add("reach", &smoothing.reach, "R", "How far to smooth")
       .in(ask::Unit::kGround)
-      .within(ask::kPositive)
+      .within(NumberRange::kPositive)
       .excluding("error")
       .like("50");
   rows.add("rounds", &smoothing.rounds, "N", "How often")
@@ -51,7 +51,7 @@ void add_question(ask::Parameters& rows, Smoothing& smoothing) {
       .of({"cubic", "linear"})
       .like("linear");
   rows.add("weights", &smoothing.weights, "W...", "Its weights")
-      .within(ask::kNotNegative)
+      .within(NumberRange::kNotNegative)
       .values(2, 4)
       .needing("kernel")
       .like("1,2");
@@ -210,7 +210,7 @@ TEST(Parameter, MayTakeMoreOverHttp) {
                                   {.name = "bend",
                                    .into = &value,
                                    .range = {.least = 0, .most = 1},
-                                   .range_over_http = ask::kNotNegative,
+                                   .range_over_http = NumberRange::kNotNegative,
                                    .excludes = "flat",
                                    .bound_at = ask::Door::kProgram}};
     ask::Reading reading(door);

@@ -31,7 +31,7 @@ double coefficient_of_factor(const std::string& text) {
 Parameter& add_error(Parameters& rows, std::optional<double>& error, std::string help) {
   return rows.add("error", &error, "E", std::move(help))
       .in(Unit::kHeight)
-      .within(kTolerance)
+      .within(NumberRange::kTolerance)
       .like("5");
 }
 
@@ -76,7 +76,7 @@ void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
   rows.add("interval", &levels.interval, "D", interval_help)
       .spelled("-i,--interval")
       .in(Unit::kHeight)
-      .within(kPositive)
+      .within(NumberRange::kPositive)
       .excluding("level")
       .at(doors)
       .like("100");
@@ -108,7 +108,7 @@ void add_curvature(Parameters& rows, double& coefficient) {
            "without refraction, 0.75 the 4/3 Earth of radio")
       .within({.least = 0, .most = 1})
       // Air that bends light upwards has more than 1.
-      .within_over_http(kNotNegative)
+      .within_over_http(NumberRange::kNotNegative)
       .with_default()
       .like("0.857")
       .hinting("An Earth of so many times its radius is --refraction ");

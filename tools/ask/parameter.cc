@@ -44,21 +44,6 @@ std::string words_of(Unit unit, Door door) {
   return {};
 }
 
-/// "a finite number > 0".
-std::string words_of(const Range& range, bool whole = false) {
-  const bool has_least = range.least > kFinite.least, has_most = range.most < kFinite.most;
-  const std::string kind = whole                       ? "a whole number"
-                           : has_least && has_most     ? "a number"
-                           : std::isfinite(range.most) ? "a finite number"
-                                                       : "a number";
-  const double least = whole && !has_least ? 0 : range.least;
-  if (has_least && has_most) {
-    return kind + " from " + tools::short_number(least) + " to " + tools::short_number(range.most);
-  }
-  if (!has_least && !whole) return kind;
-  return kind + (range.is_above ? " > " : " >= ") + tools::short_number(least);
-}
-
 bool has_own_unit(const Parameter& p, Door door) {
   return door == Door::kProgram && (p.unit == Unit::kHeight || p.unit == Unit::kGround);
 }

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/number.h"
 #include "engine/query/questions.h"
 #include "tools/facts/quantity.h"
 
@@ -38,27 +39,6 @@ enum class Unit : std::uint8_t {
   kGround,  ///< A distance: map units; in a geographic CRS metres.
 };
 
-/// Which numbers mean something.
-struct Range {
-  double least = std::numeric_limits<double>::lowest();
-  double most = std::numeric_limits<double>::max();
-  bool is_above = false;  ///< `least` is none itself.
-  bool has_nan = false;   ///< NaN is one, too.
-
-  [[nodiscard]] bool holds(double number) const noexcept {
-    if (number != number) return has_nan;
-    return (is_above ? number > least : number >= least) && number <= most;
-  }
-};
-inline constexpr Range kFinite{};
-inline constexpr Range kNotNegative{.least = 0};
-inline constexpr Range kPositive{.least = 0, .is_above = true};
-inline constexpr Range kAnyNumber{.least = -std::numeric_limits<double>::infinity(),
-                                  .most = std::numeric_limits<double>::infinity(),
-                                  .has_nan = true};
-/// As coarse as can be is infinite.
-inline constexpr Range kTolerance{.least = 0, .most = std::numeric_limits<double>::infinity()};
-
 /// Where a value goes: a flag, numbers, whole numbers, texts, a window; or what reads a text, and
 /// throws Error where it is none of its values.
 using Into =
@@ -76,10 +56,10 @@ struct Parameter {
   Into into{};
   std::string_view metavar{};  ///< The value's name in help: "E", "X Y".
   Unit unit = Unit::kNone;
-  Range range{};
+  NumberRange range{};
   std::string_view source_unit{};  ///< "in CRS units": of the source, so no number has its own.
-  std::optional<Range> range_over_http{};   ///< Where HTTP takes more; empty: `range`.
-  std::vector<std::string_view> choices{};  ///< Values of a text; empty: any text.
+  std::optional<NumberRange> range_over_http{};  ///< Where HTTP takes more; empty: `range`.
+  std::vector<std::string_view> choices{};       ///< Values of a text; empty: any text.
   std::uint32_t least_values = 1, most_values = 1;
   std::string_view excludes{}, needs{};  ///< Names between blanks.
   /// Where these hold. Elsewhere what is beside it is not looked at.
@@ -97,8 +77,8 @@ struct Parameter {
   // Each sets what its name says, so that a row is one statement.
   Parameter& spelled(std::string_view on_command_line) { return words = on_command_line, *this; }
   Parameter& in(Unit of) { return unit = of, *this; }
-  Parameter& within(const Range& of) { return range = of, *this; }
-  Parameter& within_over_http(const Range& of) { return range_over_http = of, *this; }
+  Parameter& within(const NumberRange& of) { return range = of, *this; }
+  Parameter& within_over_http(const NumberRange& of) { return range_over_http = of, *this; }
   Parameter& of(std::vector<std::string_view> all) { return choices = std::move(all), *this; }
   Parameter& values(std::uint32_t least, std::uint32_t most) {
     least_values = least;
@@ -133,7 +113,7 @@ class Parameters : public std::vector<Parameter> {
 /// The parameter's help with its unit, as the door has it.
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
 /// The numbers that a door takes.
-[[nodiscard]] inline const Range& range_at(const Parameter& parameter, Door door) noexcept {
+[[nodiscard]] inline const NumberRange& range_at(const Parameter& parameter, Door door) noexcept {
   const bool is_other = door == Door::kService && parameter.range_over_http;
   return is_other ? *parameter.range_over_http : parameter.range;
 }

@@ -15,8 +15,8 @@ void add_question(Parameters& rows, ProfileRequest& request) {
              "LINESTRING(-118.3 34.34, -118.29 34.35)");
   rows.add("stations", &request.station_step, "D", "Beside the breaks, heights at equal distances")
       .in(Unit::kGround)
-      .within(kPositive)
-      .within_over_http(kNotNegative)  // 0: none
+      .within(NumberRange::kPositive)
+      .within_over_http(NumberRange::kNotNegative)  // 0: none
       .like("100");
   add_detail(rows, request.detail, "",
              "The TIN of the terrain's N most important vertices, instead of an error");

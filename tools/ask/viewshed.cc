@@ -23,12 +23,12 @@ void add_question(Parameters& rows, ViewshedQuestion& question) {
       .like("2");
   rows.add("radius", &question.radius, "R", "How far to look")
       .in(Unit::kGround)
-      .within(kPositive)
+      .within(NumberRange::kPositive)
       .required_at(Door::kBoth)
       .at(Door::kProgram);
   rows.add("radius", &question.radius, "", "How far to look, over ground")
       .in(Unit::kHeight)
-      .within(kPositive)
+      .within(NumberRange::kPositive)
       .required_at(Door::kBoth)
       .at(Door::kService)
       .like("5000");

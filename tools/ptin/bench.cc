@@ -86,7 +86,7 @@ Declared declare_bench(Context& context) {
       .required_at(ask::Door::kBoth);
   rows.add("seconds", &request.seconds, "S",
            "How long to measure, about; questions that take long may double it")
-      .within(ask::kPositive)
+      .within(NumberRange::kPositive)
       .with_default();
   rows.add("count", &request.most_times, "N", "How often each question is asked, at most")
       .within({.least = 1, .most = 1e6})

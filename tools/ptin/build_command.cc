@@ -18,21 +18,6 @@ namespace ptin::tools {
 
 namespace {
 
-const ask::Range& range_of(const BuildOption& option) {
-  if (option.unit == nullptr) return ask::kAnyNumber;
-  switch (option.range) {
-    case NumberRange::kNotNegative:
-      return ask::kNotNegative;
-    case NumberRange::kPositive:
-      return ask::kPositive;
-    case NumberRange::kTolerance:
-      return ask::kTolerance;
-    case NumberRange::kFinite:
-      break;
-  }
-  return ask::kFinite;
-}
-
 /// What reads the word of an option.
 ask::Into word_of(const WordOption& words, BuildOptions& options) {
   return [words, &options](const std::string& word) {
@@ -47,7 +32,7 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
   ask::Parameter row{.name = option.name,
                      .words = option.words == nullptr ? "" : option.words,
                      .metavar = option.value == nullptr ? "" : option.value,
-                     .range = range_of(option),
+                     .range = option.unit == nullptr ? NumberRange::kAny : option.range,
                      .source_unit = option.unit == nullptr ? "" : option.unit,
                      .splits_at_commas = option.has_many && !option.is_file,
                      .shows_default = option.shows_default,
@@ -100,7 +85,7 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
   rows.add("dry-run", &command.dry_run, "", "Say what the build would need, and stop");
   rows.add("progress-fd", &command.progress_fd, "FD",
            "Write progress as lines of JSON to this file descriptor")
-      .within(ask::kNotNegative);
+      .within(NumberRange::kNotNegative);
   rows.add("parts", &command.parts, "N",
            "Read the source and divide the rest into this many jobs of a batch system, which\n"
            "`ptin build-part` does")

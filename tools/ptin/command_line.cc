@@ -141,7 +141,7 @@ std::string values_of(const ask::Parameter& row) {
   }
   if (!row.choices.empty()) text += "}";
   const auto [least, most] = std::pair(row.range.least, row.range.most);
-  if (least > ask::kFinite.least && most < ask::kFinite.most) {
+  if (least > NumberRange::kFinite.least && most < NumberRange::kFinite.most) {
     text += " in [" + short_number(least) + " - " + short_number(most) + "]";
   }
   return text;

@@ -373,7 +373,7 @@ ask::Parameters parameters_of(ExportOptions& options) {
   add_model(rows, options.model);
   rows.add("nodata", &options.nodata, "V",
            "Rasters of heights: the value where there is no surface (default -9999)")
-      .within(ask::kAnyNumber);
+      .within(NumberRange::kAny);
   rows.add("co", &options.creation_options, "KEY=VALUE",
            "Rasters: a creation option of GDAL's driver; may be given several times")
       .repeated();

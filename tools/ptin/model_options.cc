@@ -15,7 +15,7 @@ namespace {
 double reduction_of(const std::string& text) {
   const std::optional<double> number =
       parse_number<double>(ask::trimmed(text.starts_with("1:") ? text.substr(2) : text));
-  if (number && ask::kPositive.holds(*number)) return *number;
+  if (number && NumberRange::kPositive.holds(*number)) return *number;
   refuse("\"" + text + "\" is no scale; write it as 1:25000, or as 25000");
 }
 
@@ -30,7 +30,7 @@ void add_model(ask::Parameters& rows, ModelOptions& options) {
       "1:N", ".stl, .glb: a model at this scale, as 1:25000; an STL is in millimetres then");
   rows.add("exaggeration", &options.exaggeration, "F",
            ".stl, .glb: heights are so many times as large")
-      .within(ask::kPositive)
+      .within(NumberRange::kPositive)
       .with_default();
 }
 

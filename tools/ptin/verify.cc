@@ -285,7 +285,7 @@ Declared declare_verify(Context& context) {
   rows.add("tolerance", &command->tolerances, "E...",
            "Tolerances to check against the source; without it 0 and four more")
       .in(ask::Unit::kHeight)
-      .within(ask::kNotNegative)
+      .within(NumberRange::kNotNegative)
       .values(1, ask::kAnyNumberOfValues)
       .needing("against");
   ask::add_memory(rows, command->memory,

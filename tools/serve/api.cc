@@ -15,12 +15,12 @@ namespace {
 
 /// The numbers of a range, as a schema tells them.
 void add_range(Json& schema, const ask::Parameter& row) {
-  const ask::Range& range = ask::range_at(row, ask::Door::kService);
+  const NumberRange& range = ask::range_at(row, ask::Door::kService);
   const bool is_whole = ask::is_whole(row);
   const double least = is_whole ? std::max(0.0, range.least) : range.least;
-  if (least > ask::kFinite.least) schema["minimum"] = least;
+  if (least > NumberRange::kFinite.least) schema["minimum"] = least;
   if (range.is_above) schema["exclusiveMinimum"] = true;
-  if (range.most < ask::kFinite.most) schema["maximum"] = range.most;
+  if (range.most < NumberRange::kFinite.most) schema["maximum"] = range.most;
 }
 
 Json schema_of(const ask::Parameter& row) {

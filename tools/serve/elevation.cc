@@ -62,7 +62,7 @@ void add_question(ask::Parameters& rows, ElevationQuestion& question) {
   }
   rows.add("error", &question.error, "",
            "Certified error allowed, in metres; without it: full detail")
-      .within(ask::kNotNegative)
+      .within(NumberRange::kNotNegative)
       .at(kService)
       .like("5");
 }
