@@ -34,13 +34,11 @@ template <typename Result>
 [[nodiscard]] AnswerFacts facts_of(const Result& result, const StoreFile& store,
                                    const CrsFacts& crs,
                                    const std::optional<tools::Transformed>* transformed = nullptr) {
-  return {result.certified_error,
-          result.certified_deviation,
-          border_moved_at_most(store, result.certified_error),
-          result.exact,
-          &crs,
-          transformed,
-          &result.cost};
+  AnswerFacts facts =
+      facts_of({result.certified_error, result.certified_deviation}, result.exact, store, crs);
+  facts.transformed = transformed;
+  facts.cost = &result.cost;
+  return facts;
 }
 
 /// How far a TIN can be off; the fields of all answers, which begin so.

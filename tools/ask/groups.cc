@@ -41,7 +41,7 @@ void add_detail(Parameters& rows, DetailRequest& detail, const std::string& erro
   rows.add("vertices", &detail.vertices, "N", vertices_help).excluding("error").at(doors);
 }
 
-void add_region(Parameters& rows, RegionText& region, RegionKinds kinds, Door doors) {
+void add_window(Parameters& rows, RegionText& region, Door doors) {
   if (is_at(doors, Door::kService)) {
     rows.add("bbox", &region.window, "",
              "West, south, east, north; across the antimeridian west is larger than east")
@@ -54,15 +54,12 @@ void add_region(Parameters& rows, RegionText& region, RegionKinds kinds, Door do
       .in(Unit::kMap)
       .values(4, 4)
       .at(Door::kProgram);
-  if (kinds == RegionKinds::kWindow) return;
+}
+
+void add_region(Parameters& rows, RegionText& region, Door doors) {
+  add_window(rows, region, doors);
   rows.add("polygon", &region.polygon, "WKT_OR_FILE", "A polygon: WKT, or a file that holds it")
       .excluding("window")
-      .at(Door::kProgram);
-  if (kinds == RegionKinds::kWithInside) return;
-  rows.add("point", &region.point, "X Y", "A point")
-      .in(Unit::kMap)
-      .values(2, 2)
-      .excluding("window polygon")
       .at(Door::kProgram);
 }
 

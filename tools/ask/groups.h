@@ -33,10 +33,10 @@ struct RegionText {
 
   [[nodiscard]] bool given() const { return window || !polygon.empty() || !point.empty(); }
 };
-/// The parts of a region that a question takes.
-enum class RegionKinds : std::uint8_t { kWindow, kWithInside, kAll };
-/// --window, --polygon, --point on the command line; over HTTP `bbox`, in the CRS of the client.
-void add_region(Parameters& rows, RegionText& region, RegionKinds kinds, Door doors);
+/// --window on the command line; over HTTP `bbox`, in the CRS of the client.
+void add_window(Parameters& rows, RegionText& region, Door doors);
+/// The same, and --polygon.
+void add_region(Parameters& rows, RegionText& region, Door doors);
 
 /// Heights of isolines and of volumes: `level`, or `interval` with `base`.
 struct Levels {

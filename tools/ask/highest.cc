@@ -33,7 +33,7 @@ Fields<HighestResult> point_fields() {
 
 void add_question(Parameters& rows, HighestQuestion& question) {
   HighestRequest& request = question.request;
-  add_region(rows, question.region, RegionKinds::kWithInside, Door::kBoth);
+  add_region(rows, question.region, Door::kBoth);
   rows.add("lowest", &request.lowest, "", "The lowest point instead").like("true");
   rows.add("listed", &request.listed, "K", "How many of the highest vertices to list")
       .spelled("-k")

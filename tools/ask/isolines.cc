@@ -13,7 +13,7 @@ void add_question(Parameters& rows, IsolineQuestion& question) {
   IsolineRequest& request = question.request;
   add_levels(rows, question.levels, "Heights of the lines, instead of an interval",
              "Every multiple of D, from the base", Door::kBoth);
-  add_region(rows, question.region, RegionKinds::kWithInside, Door::kBoth);
+  add_region(rows, question.region, Door::kBoth);
   add_detail(
       rows, request.detail, "",
       "The isolines of the TIN of the terrain's N most important vertices, instead of an error");

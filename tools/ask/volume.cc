@@ -60,7 +60,7 @@ void add_question(Parameters& rows, VolumeQuestion& question) {
   rows.add("against", &question.against, "OTHER",
            "A second .ptin file, on any grid, in the same CRS; cut is where FILE is above it")
       .excluding("level interval");
-  add_region(rows, question.region, RegionKinds::kWithInside, Door::kProgram);
+  add_region(rows, question.region, Door::kProgram);
   add_detail(rows, question.detail, ", of either file; volumes come with intervals",
              "Measure the TINs of the N most important vertices; volumes come with intervals");
 }

@@ -37,41 +37,26 @@ enum class AnswerForm : std::uint8_t {
 /// @throws Error as OutputFile, as write_to_stdout()
 void write_csv(const OutputOptions& options, AnswerForm form, bool json, const std::string& text);
 
-/// Writes rows as a layer.
-/// @param fields  Those of the layer.
-/// @param rows    How many there are. `row_at` and `geometry_at` make one by its number.
-/// @throws Error as VectorFile
-template <typename Row, typename RowAt, typename GeometryAt>
-void write_layer(const OutputOptions& out, VectorFile::Layer layer, const ask::Fields<Row>& fields,
-                 std::size_t rows, const RowAt& row_at, const GeometryAt& geometry_at) {
-  layer.fields = ask::layer_fields_of(fields);
-  VectorFile file(out.output, out.overwrite, layer);
-  for (std::size_t i = 0; i < rows; ++i) {
-    const Row& row = row_at(i);
-    file.add(geometry_at(i), ask::layer_values_of(fields.values_of(row)));
-  }
-  file.publish();
-}
-/// Rows as CSV.
-template <typename Row, typename RowAt>
-[[nodiscard]] std::string table_of(const ask::Fields<Row>& fields, std::size_t rows,
-                                   const RowAt& row_at) {
-  ask::LongText text;
-  ask::add_csv(text, fields, rows, row_at);
-  return text.take();
-}
 /// Writes rows as a layer or as CSV, where the form asks for one; with `json` stdout is taken.
-/// @param fields  All; the form chooses those of it.
+/// @param all   The fields, of which the form has some.
+/// @param rows  How many there are. `row_at` and `geometry_at` make one by its number.
+/// @throws Error as VectorFile, as write_csv()
 template <typename Row, typename RowAt, typename GeometryAt>
 void write_rows(const OutputOptions& out, AnswerForm form, bool json, VectorFile::Layer layer,
-                const ask::Fields<Row>& fields, std::size_t rows, const RowAt& row_at,
+                const ask::Fields<Row>& all, std::size_t rows, const RowAt& row_at,
                 const GeometryAt& geometry_at) {
   if (form == AnswerForm::kLayer) {
-    write_layer(out, std::move(layer), fields.told(ask::Told::kProgram & ask::Told::kFeature), rows,
-                row_at, geometry_at);
+    const auto fields = all.told(ask::Told::kProgram & ask::Told::kFeature);
+    layer.fields = ask::layer_fields_of(fields);
+    VectorFile file(out.output, out.overwrite, layer);
+    for (std::size_t i = 0; i < rows; ++i) {
+      file.add(geometry_at(i), ask::layer_values_of(fields.values_of(row_at(i))));
+    }
+    file.publish();
   } else if (form == AnswerForm::kCsv || !json) {
-    write_csv(out, form, json,
-              table_of(fields.told(ask::Told::kProgram & ask::Told::kTableRow), rows, row_at));
+    ask::LongText text;
+    ask::add_csv(text, all.told(ask::Told::kProgram & ask::Told::kTableRow), rows, row_at);
+    write_csv(out, form, json, text.take());
   }
 }
 /// Rows as objects.

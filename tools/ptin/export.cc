@@ -357,7 +357,7 @@ int run_export(const ExportOptions& options, const Context& context) {
 ask::Parameters parameters_of(ExportOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
-  ask::add_region(rows, options.region, ask::RegionKinds::kWithInside, ask::Door::kProgram);
+  ask::add_region(rows, options.region, ask::Door::kProgram);
   ask::add_detail(rows, options.detail, "; without it the full TIN",
                   "The TIN of the terrain's N most important vertices");
   add_output(rows, options.out,

@@ -159,7 +159,11 @@ int run_refine(const RefineOptions& options, const Context& context) {
 ask::Parameters parameters_of(RefineOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, true);
-  ask::add_region(rows, options.region, ask::RegionKinds::kAll, ask::Door::kProgram);
+  ask::add_region(rows, options.region, ask::Door::kProgram);
+  rows.add("point", &options.region.point, "X Y", "A point")
+      .in(ask::Unit::kMap)
+      .values(2, 2)
+      .excluding("window polygon");
   ask::add_detail(
       rows, options.request.detail, "",
       "A mesh of exactly this many vertices, the most important ones of the region; not written "

@@ -176,7 +176,7 @@ int run_render(const RenderOptions& options, const Context& context) {
 ask::Parameters parameters_of(RenderOptions& options) {
   ask::Parameters rows;
   add_terrain(rows, options.terrain, false);
-  ask::add_region(rows, options.region, ask::RegionKinds::kWindow, ask::Door::kProgram);
+  ask::add_window(rows, options.region, ask::Door::kProgram);
   ask::add_error(rows, options.error,
                  "Certified error allowed; without it as fine as the pixels can show");
   rows.add("size", &options.size, "W H", "Pixels (default: the longer side has 1200)")

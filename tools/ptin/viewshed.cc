@@ -148,9 +148,9 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
 
 void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
                     const Context& context) {
-  write_layer(
-      options.out, {"viewshed", wkbPoint, {}, wkt},
-      ask::target_fields().told(ask::Told::kProgram & ask::Told::kFeature), seen.vertices.size(),
+  write_rows(
+      options.out, AnswerForm::kLayer, false, {"viewshed", wkbPoint, {}, wkt}, ask::target_fields(),
+      seen.vertices.size(),
       [&](std::size_t i) -> const Viewshed::Target& {
         if (i % kStopInterval == 0) check_stop(context, options);
         return seen.vertices[i];

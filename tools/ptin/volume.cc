@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -232,9 +234,10 @@ int run_volume(const VolumeOptions& options, const Context& context) {
                  {unit_of_ground(crs), crs.vertical_unit});
   } else if (is_table) {
     // A row for each level: a stage-storage curve.
-    write_csv(options.answer, form, context.json,
-              table_of(ask::volume_row_fields().told(ask::Told::kTableRow), told.rows.size(),
-                       [&](std::size_t i) { return told.rows[i]; }));
+    write_rows(
+        options.answer, form, context.json, {}, ask::volume_row_fields(), told.rows.size(),
+        [&](std::size_t i) { return told.rows[i]; },
+        [](std::size_t) { return std::unique_ptr<OGRGeometry>(); });
   }
   if (context.json) {
     print_volumes(told, options, terrain.store(), crs, asked.transformed);

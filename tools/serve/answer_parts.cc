@@ -2,13 +2,13 @@
 #include "tools/serve/answer_parts.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "engine/crs/border_move.h"
 #include "engine/number.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
+#include "tools/output/file_name.h"
 
 namespace ptin::serve {
 
@@ -21,33 +21,19 @@ struct Liking {
   int closeness = 0;
 };
 
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
-
-/// The part of a list before the next mark, without blanks; the list loses it.
-std::string_view next_part(std::string_view& list, char mark) {
-  const std::size_t end = std::min(list.find(mark), list.size());
-  const std::string_view part = ask::trimmed(list.substr(0, end));
-  list.remove_prefix(std::min(end + 1, list.size()));
-  return part;
-}
-
 /// What the header Accept, in lower case, says of a media type: the range counts that is closest.
 Liking named_liking_of(std::string_view accept, std::string_view media) {
   Liking liking;
-  while (!accept.empty()) {
-    std::string_view range = next_part(accept, ',');
-    const std::string_view name = next_part(range, ';');
+  for (const std::string_view range : ask::parts_of(accept, ',')) {
+    const std::vector<std::string_view> parts = ask::parts_of(range, ';');
+    const std::string_view name = parts.empty() ? "" : ask::trimmed(parts[0]);
     const bool is_of_kind =
         name.ends_with("/*") && media.starts_with(name.substr(0, name.size() - 1));
     const int closeness = name == media ? 3 : name == "*/*" ? 1 : is_of_kind ? 2 : 0;
     if (closeness <= liking.closeness) continue;
     liking = {1.0, closeness};
-    while (!range.empty()) {
-      const std::string_view parameter = next_part(range, ';');
+    for (std::string_view parameter : parts) {
+      parameter = ask::trimmed(parameter);
       if (parameter.starts_with("q="))
         liking.quality = parse_number<double>(parameter.substr(2)).value_or(0.0);
     }
@@ -99,7 +85,7 @@ const ask::Format& format_of(const Asked& asked) {
       if (format.name == chosen) return format;
     }
   }
-  const std::string accept = lower_case(http::list_of(asked.request, "accept"));
+  const std::string accept = tools::lower_case(http::list_of(asked.request, "accept"));
   const ask::Format* best = &asked.formats.front();
   Liking most;
   for (const ask::Format& format : asked.formats) {

@@ -25,7 +25,7 @@ struct MeshQuestion {
 };
 
 void add_question(ask::Parameters& rows, MeshQuestion& question) {
-  ask::add_region(rows, question.region, ask::RegionKinds::kWindow, ask::Door::kService);
+  ask::add_window(rows, question.region, ask::Door::kService);
   ask::add_detail(
       rows, question.request.detail, "",
       "A mesh of so many vertices, the most important ones of the window, instead of an error",
