@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/formats/csv_text.h"
-
 namespace ptin::ask {
 
 namespace {
@@ -19,9 +17,13 @@ Json& member_of(Json& object, std::string_view name) {
 
 void add_csv_value(LongText& text, const Json& value) {
   if (value.is_string()) {
-    std::string field;
-    tools::append_csv_field(field, value.get_ref<const std::string&>());
-    text.add(field);
+    const auto& field = value.get_ref<const std::string&>();
+    // By RFC 4180, where it needs quotes to be read back as it is.
+    const bool is_quoted = field.find_first_of(",;\"\r\n\t") != std::string::npos ||
+                           field.starts_with('#') || field.starts_with(' ') || field.ends_with(' ');
+    std::string quoted = "\"";
+    for (const char c : field) quoted.append(c == '"' ? 2 : 1, c);
+    text.add(is_quoted ? quoted + "\"" : field);
   } else if (value.is_boolean()) {
     text.add(value.get<bool>() ? "1" : "0");
   } else if (value.is_number() && std::isfinite(value.get<double>())) {

@@ -125,8 +125,6 @@ std::string published_name(const fs::path& written, const fs::path& wanted) {
 
 }  // namespace
 
-std::span<const VectorFormat> vector_formats() noexcept { return kVectorFormats; }
-
 std::string known_vector_extensions() {
   std::string known;
   for (const VectorFormat& f : kVectorFormats)

@@ -25,7 +25,6 @@ struct VectorFormat {
   const char* extension;
   const char* driver;  ///< GDAL's name for it.
 };
-[[nodiscard]] std::span<const VectorFormat> vector_formats() noexcept;
 /// The extensions as "`.gpkg`, ..." for help texts.
 [[nodiscard]] std::string known_vector_extensions();
 /// The format of a file by its extension; null when it is none of them.
