@@ -24,9 +24,8 @@ void add_answer_output(ask::Parameters& rows, OutputOptions& options, AnswerKind
 AnswerForm form_of(const OutputOptions& options, bool json, AnswerKinds kinds) {
   if (options.output.empty()) return AnswerForm::kStdout;
   if (options.output == "-") {
-    if (!json) return kinds.layer ? AnswerForm::kLayer : AnswerForm::kStdout;
-    throw Error(ErrorCode::invalid_argument,
-                "--json and -o - both write to stdout; give the answer a file name");
+    check_file_or_stdout(options, "the answer", json);
+    return kinds.layer ? AnswerForm::kLayer : AnswerForm::kStdout;
   }
   const std::string extension = lower_extension(options.output);
   AnswerForm form = AnswerForm::kLayer;

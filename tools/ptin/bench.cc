@@ -74,13 +74,8 @@ int run_bench(const BenchOptions& options, const Context& context) {
   return kExitDone;
 }
 
-}  // namespace
-
-Declared declare_bench(Context& context) {
-  const auto options = std::make_shared<BenchOptions>();
-  IoRequest& request = options->request;
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
+void add_question(ask::Parameters& rows, BenchOptions& options) {
+  IoRequest& request = options.request;
   rows.add("file", &request.file, "", "The .ptin file")
       .spelled("FILE")
       .required_at(ask::Door::kBoth);
@@ -93,15 +88,17 @@ Declared declare_bench(Context& context) {
       .with_default();
   rows.add("seed", &request.seed, "N", "Of the places that are asked for").with_default();
   ask::add_error(rows, request.tolerance, "Ask at a certified error; without it exact");
-  ask::add_threads(rows, options->threads,
+  ask::add_threads(rows, options.threads,
                    "Most threads to ask at once (default: those that the process may use)", 4096);
-  ask::add_memory(rows, options->memory);
+  ask::add_memory(rows, options.memory);
   rows.add("tmp", &request.temporary_folder, "DIR",
            "Folder for libspatialindex's tree, which is removed again (default: beside FILE)");
-  add_output(rows, options->out, "Draw the figures (" + known_picture_extensions() + ")", false,
+  add_output(rows, options.out, "Draw the figures (" + known_picture_extensions() + ")", false,
              "PLOT");
-  declared.run = [options, &context] { return run_bench(*options, context); };
-  return declared;
 }
+
+}  // namespace
+
+Declared declare_bench(Context& context) { return declared<BenchOptions>(context, run_bench); }
 
 }  // namespace ptin::tools

@@ -89,8 +89,7 @@ int run_build_part(const PartCommand& command, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(PartCommand& command) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, PartCommand& command) {
   rows.add("plan", &command.plan, "", "The plan that `ptin build --parts` wrote")
       .spelled("PLAN")
       .required_at(ask::Door::kBoth);
@@ -104,7 +103,6 @@ ask::Parameters parameters_of(PartCommand& command) {
   rows.add("memory", &command.memory, "SIZE",
            "Limit on the memory of this job (default: that of the plan)");
   ask::add_threads(rows, command.threads, "Threads of this job (default: one a processor)");
-  return rows;
 }
 
 }  // namespace

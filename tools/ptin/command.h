@@ -39,12 +39,14 @@ struct Declared {
   Action run;
 };
 
-/// A subcommand that reads into `Options`, for which `parameters_of(Options&)` has the rows.
+/// A subcommand that reads into `Options`, whose rows add_question() adds.
 template <typename Options>
 [[nodiscard]] Declared declared(Context& context,
                                 int (*run)(const Options& options, const Context& context)) {
   const auto options = std::make_shared<Options>();
-  return {parameters_of(*options), [options, run, &context] { return run(*options, context); }};
+  Declared made{{}, [options, run, &context] { return run(*options, context); }};
+  add_question(made.parameters, *options);
+  return made;
 }
 
 struct Command {

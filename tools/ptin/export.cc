@@ -354,8 +354,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(ExportOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, ExportOptions& options) {
   add_terrain(rows, options.terrain, false);
   ask::add_region(rows, options.region, ask::Door::kProgram);
   ask::add_detail(rows, options.detail, "; without it the full TIN",
@@ -378,7 +377,6 @@ ask::Parameters parameters_of(ExportOptions& options) {
            "Rasters: a creation option of GDAL's driver; may be given several times")
       .repeated();
   ask::add_memory(rows, options.memory, "Memory to work in, as 512M or 2G (default 1G)");
-  return rows;
 }
 
 }  // namespace

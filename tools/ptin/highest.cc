@@ -64,12 +64,10 @@ int run_highest(const HighestOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(HighestOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, HighestOptions& options) {
   add_terrain(rows, options.terrain, false);
   ask::add_question(rows, options.question);
   ask::add_memory(rows, options.memory);
-  return rows;
 }
 
 }  // namespace

@@ -55,12 +55,7 @@ void check_options(const IsolineOptions& options, const Context& context) {
   }
   static_cast<void>(isoline_format_of(options.out.output));
   if (options.polygons) check_isoline_fields(options.out.output, "--polygons");
-  if (options.out.output != "-") {
-    check_output(options.out.output, options.out.overwrite);
-  } else if (context.json) {
-    throw Error(ErrorCode::invalid_argument,
-                "--json and -o - both write to stdout; give the isolines a file name");
-  }
+  check_file_or_stdout(options.out, "the isolines", context.json);
 }
 
 std::string folder_for_temporaries(const IsolineOptions& options) {
@@ -242,8 +237,7 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
                           : run_lines(options, request, asked, context);
 }
 
-ask::Parameters parameters_of(IsolineOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, IsolineOptions& options) {
   add_terrain(rows, options.terrain, true,
               "Folder for temporary files: lines that do not fit in --memory (default: OUT's "
               "folder), --index spatialindex (default: beside FILE)");
@@ -263,7 +257,6 @@ ask::Parameters parameters_of(IsolineOptions& options) {
   ask::add_threads(rows, options.threads,
                    "Threads (default: one a processor that affinity and cgroups leave this "
                    "process); the lines are the same for any number");
-  return rows;
 }
 
 }  // namespace

@@ -71,8 +71,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(LocateOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, LocateOptions& options) {
   add_terrain(rows, options.terrain, true);
   rows.add("x_y", &options.point, "X Y", "A point").spelled("X_Y").in(ask::Unit::kMap).values(2, 2);
   rows.add("points", &options.points, "FILE",
@@ -83,7 +82,6 @@ ask::Parameters parameters_of(LocateOptions& options) {
   ask::add_by(rows, options.by);
   ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer);
-  return rows;
 }
 
 }  // namespace

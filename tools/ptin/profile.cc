@@ -172,8 +172,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(ProfileOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, ProfileOptions& options) {
   add_terrain(rows, options.terrain, false);
   rows.add("line", &options.line, "WKT_OR_FILE",
            "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
@@ -186,7 +185,6 @@ ask::Parameters parameters_of(ProfileOptions& options) {
       .needing("stations");
   ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, {.plot = true});
-  return rows;
 }
 
 }  // namespace

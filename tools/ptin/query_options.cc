@@ -14,6 +14,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
+#include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/source_counts.h"
 #include "tools/region/on_terrain.h"
@@ -50,6 +51,11 @@ void add_output(ask::Parameters& rows, OutputOptions& options, std::string help,
       .spelled("-o,--output")
       .required_at(is_required ? ask::Door::kBoth : ask::Door::kNone);
   rows.add("overwrite", &options.overwrite, "", "Replace an existing output");
+}
+
+void check_file_or_stdout(const OutputOptions& out, const std::string& what, bool json) {
+  if (out.output != "-") return check_output(out.output, out.overwrite);
+  if (json) refuse("--json and -o - both write to stdout; give " + what + " a file name");
 }
 
 namespace {

@@ -53,6 +53,12 @@ struct OutputOptions {
 void add_output(ask::Parameters& rows, OutputOptions& options, std::string help,
                 bool is_required = true, std::string_view metavar = "OUT");
 
+/// Looks at an output before the work: it must not be there, or may be replaced; - is stdout, which
+/// --json would write to, too.
+/// @param what  "the stream".
+/// @throws Error as check_output()
+void check_file_or_stdout(const OutputOptions& out, const std::string& what, bool json);
+
 /// A region, and what was done to it where it came from another CRS.
 struct AskedRegion {
   std::optional<Region> region;  ///< None: everywhere.

@@ -156,8 +156,7 @@ int run_refine(const RefineOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(RefineOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, RefineOptions& options) {
   add_terrain(rows, options.terrain, true);
   ask::add_region(rows, options.region, ask::Door::kProgram);
   rows.add("point", &options.region.point, "X Y", "A point")
@@ -183,7 +182,6 @@ ask::Parameters parameters_of(RefineOptions& options) {
   add_model(rows, options.model);
   rows.add("stats", &options.stats, "", "Print what is certified and what it cost, too");
   ask::add_memory(rows, options.memory);
-  return rows;
 }
 
 }  // namespace

@@ -173,8 +173,7 @@ int run_render(const RenderOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(RenderOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, RenderOptions& options) {
   add_terrain(rows, options.terrain, false);
   ask::add_window(rows, options.region, ask::Door::kProgram);
   ask::add_error(rows, options.error,
@@ -187,7 +186,6 @@ ask::Parameters parameters_of(RenderOptions& options) {
   rows.add("no-legend", &options.no_legend, "", "No scale bar and no height colours");
   add_output(rows, options.out, "The picture to write: " + known_picture_extensions());
   ask::add_memory(rows, options.memory);
-  return rows;
 }
 
 }  // namespace

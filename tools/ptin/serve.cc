@@ -153,8 +153,7 @@ std::string limits_help() {
   return help;
 }
 
-ask::Parameters parameters_of(ServeCommand& command) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, ServeCommand& command) {
   rows.add("file", &command.files, "FILE...", "Files, each as FILE or NAME=FILE")
       .spelled("FILE")
       .values(1, ask::kAnyNumberOfValues);
@@ -177,7 +176,6 @@ ask::Parameters parameters_of(ServeCommand& command) {
            "A proxy that is believed its X-Forwarded-For and -Proto; may be given often")
       .repeated();
   rows.add("files", &command.offers_files, "", "Give out the files themselves, by ranges");
-  return rows;
 }
 
 }  // namespace

@@ -137,8 +137,7 @@ int run_sight(const SightOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(SightOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, SightOptions& options) {
   add_terrain(rows, options.terrain, true);
   rows.add("pair", &options.pair, "X1 Y1 H1 X2 Y2 H2",
            "The two ends in map units, each with its height above ground, in the height's unit")
@@ -152,7 +151,6 @@ ask::Parameters parameters_of(SightOptions& options) {
   ask::add_by(rows, options.by);
   ask::add_memory(rows, options.memory);
   add_answer_output(rows, options.answer, {.plot = true});
-  return rows;
 }
 
 }  // namespace

@@ -31,15 +31,8 @@ struct StreamOptions {
 };
 
 void check_options(const StreamOptions& options, const Context& context) {
-  if (options.out.output != "-") {
-    check_output(options.out.output, options.out.overwrite);
-    return;
-  }
-  if (context.json) {
-    throw Error(ErrorCode::invalid_argument,
-                "--json and -o - both write to stdout; give the stream a file name");
-  }
-  if (::isatty(STDOUT_FILENO) != 0) {
+  check_file_or_stdout(options.out, "the stream", context.json);
+  if (options.out.output == "-" && ::isatty(STDOUT_FILENO) != 0) {
     throw Error(ErrorCode::invalid_argument,
                 "a stream is binary: redirect stdout, or give the stream a file name");
   }
@@ -132,8 +125,7 @@ void add_serving(ask::Parameters& rows, Serving& serving, bool is_had) {
            what + " number of splits: only the first so many, the most important ones");
 }
 
-ask::Parameters parameters_of(StreamOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, StreamOptions& options) {
   add_terrain(rows, options.terrain, false);
   add_serving(rows, options.wanted, false);
   add_serving(rows, options.had, true);
@@ -142,7 +134,6 @@ ask::Parameters parameters_of(StreamOptions& options) {
   add_output(rows, options.out, "The stream to write; - for stdout");
   rows.add("stats", &options.stats, "", "Print, on stderr, what was sent and what it cost");
   ask::add_memory(rows, options.memory);
-  return rows;
 }
 
 }  // namespace

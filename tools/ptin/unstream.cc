@@ -255,14 +255,8 @@ void check_options(const UnstreamOptions& options, bool json) {
   } else if (!options.out.output.empty()) {
     static_cast<void>(isoline_format_of(options.out.output));
     if (options.isolines.steps) check_isoline_fields(options.out.output, "--steps");
-    if (options.out.output == "-" && json) {
-      throw Error(ErrorCode::invalid_argument,
-                  "--json and -o - both write to stdout; give the isolines a file name");
-    }
   }
-  if (!options.out.output.empty() && options.out.output != "-") {
-    check_output(options.out.output, options.out.overwrite);
-  }
+  if (!options.out.output.empty()) check_file_or_stdout(options.out, "the isolines", json);
 }
 
 int run_unstream(const UnstreamOptions& options, const Context& context) {
@@ -304,8 +298,7 @@ int run_unstream(const UnstreamOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(UnstreamOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, UnstreamOptions& options) {
   rows.add("in", &options.inputs, "", "Streams, one after the other; - for stdin")
       .spelled("IN")
       .values(1, ask::kAnyNumberOfValues)
@@ -316,7 +309,6 @@ ask::Parameters parameters_of(UnstreamOptions& options) {
              false);
   add_stream_isolines(rows, options.isolines);
   ask::add_memory(rows, options.memory);
-  return rows;
 }
 
 }  // namespace

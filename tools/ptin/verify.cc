@@ -265,52 +265,51 @@ void print_findings(const VerifyCommand& command, const Findings& f) {
   }
 }
 
-}  // namespace
+int run_verify(const VerifyCommand& command, const Context& context) {
+  const Findings findings = verify(command, context);
+  if (context.json) {
+    print_json(findings_json(command, findings));
+  } else if (!context.quiet || findings.fault_count > 0) {
+    print_findings(command, findings);
+  }
+  return findings.fault_count == 0 ? kExitDone : kExitNegative;
+}
 
-Declared declare_verify(Context& context) {
-  const auto command = std::make_shared<VerifyCommand>();
-  Declared declared;
-  ask::Parameters& rows = declared.parameters;
-  add_terrain(rows, command->terrain, false);
-  rows.add("against", &command->against, "INPUT...",
+void add_question(ask::Parameters& rows, VerifyCommand& command) {
+  add_terrain(rows, command.terrain, false);
+  rows.add("against", &command.against, "INPUT...",
            "The source, every input of the build: certified errors are checked at each of its "
            "samples")
       .values(1, ask::kAnyNumberOfValues);
-  rows.add("breaklines", &command->lines.breaklines, "FILE...",
+  rows.add("breaklines", &command.lines.breaklines, "FILE...",
            "The files of breaklines of the build: the TIN is held against them")
       .values(1, ask::kAnyNumberOfValues)
       .needing("against");
-  rows.add("boundary", &command->lines.boundary, "FILE", "The file of the boundary of the build")
+  rows.add("boundary", &command.lines.boundary, "FILE", "The file of the boundary of the build")
       .needing("against");
-  rows.add("tolerance", &command->tolerances, "E...",
+  rows.add("tolerance", &command.tolerances, "E...",
            "Tolerances to check against the source; without it 0 and four more")
       .in(ask::Unit::kHeight)
       .within(NumberRange::kNotNegative)
       .values(1, ask::kAnyNumberOfValues)
       .needing("against");
-  ask::add_memory(rows, command->memory,
+  ask::add_memory(rows, command.memory,
                   "Memory to check the splits in, and to sort the points of the source in, as 512M "
                   "or 2G (default 1G)");
   rows.add(
       "tmp",
-      [&tmp = command->tmp](const std::string& folder) {
+      [&tmp = command.tmp](const std::string& folder) {
         if (!std::filesystem::is_directory(folder)) {
           refuse("there is no folder " + folder);
         }
         tmp = folder;
       },
       "DIR", "Folder for temporary files of points that do not fit (default: beside FILE)");
-  rows.add("faults", &command->faults, "N", "List at most this many faults").with_default();
-  declared.run = [command, &context] {
-    const Findings findings = verify(*command, context);
-    if (context.json) {
-      print_json(findings_json(*command, findings));
-    } else if (!context.quiet || findings.fault_count > 0) {
-      print_findings(*command, findings);
-    }
-    return findings.fault_count == 0 ? kExitDone : kExitNegative;
-  };
-  return declared;
+  rows.add("faults", &command.faults, "N", "List at most this many faults").with_default();
 }
+
+}  // namespace
+
+Declared declare_verify(Context& context) { return declared<VerifyCommand>(context, run_verify); }
 
 }  // namespace ptin::tools

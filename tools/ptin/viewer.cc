@@ -170,13 +170,11 @@ int run_viewer(const ViewerOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(ViewerOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, ViewerOptions& options) {
   add_output(rows, options.out, "The folder to write into; made where it is missing", true,
              "FOLDER");
   rows.add("stream", &options.stream, "FILE",
            "A stream that `ptin stream` wrote: copied beside the page, which opens it");
-  return rows;
 }
 
 }  // namespace

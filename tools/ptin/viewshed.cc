@@ -212,8 +212,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(ViewshedOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, ViewshedOptions& options) {
   add_terrain(rows, options.terrain, true);
   ask::add_question(rows, options.question);
   rows.add("pixel-size", &options.pixel_size, "S",
@@ -224,7 +223,6 @@ ask::Parameters parameters_of(ViewshedOptions& options) {
              "`visible` and `certain` (" +
                  known_vector_extensions() + ")");
   ask::add_memory(rows, options.memory, "Memory for the answer, as 512M or 2G (default 4G)");
-  return rows;
 }
 
 }  // namespace

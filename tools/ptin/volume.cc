@@ -247,8 +247,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   return kExitDone;
 }
 
-ask::Parameters parameters_of(VolumeOptions& options) {
-  ask::Parameters rows;
+void add_question(ask::Parameters& rows, VolumeOptions& options) {
   add_terrain(rows, options.terrain, false);
   ask::add_question(rows, options.question);
   ask::add_memory(rows, options.memory);
@@ -256,7 +255,6 @@ ask::Parameters parameters_of(VolumeOptions& options) {
   ask::add_threads(rows, options.threads,
                    "Threads (default: one a processor that affinity and cgroups leave this "
                    "process); the answer is the same for any number");
-  return rows;
 }
 
 }  // namespace
