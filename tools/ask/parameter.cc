@@ -242,7 +242,6 @@ void Reading::take(const Parameter& p, std::span<const std::string> values) {
 
 void Reading::check(std::span<const Parameter> parameters) const {
   for (const Parameter& p : parameters) {
-    if (!is_at(p.doors, door_)) continue;
     const std::string name = name_at(p, door_);
     if (!given_.contains(p.name)) {
       if (!is_at(p.required, door_)) continue;

@@ -106,6 +106,10 @@ class Parameters : public std::vector<Parameter> {
     return emplace_back(Parameter{
         .name = name, .into = std::move(into), .metavar = metavar, .help = std::move(help)});
   }
+  /// Leaves those of one door.
+  void keep(Door door) {
+    std::erase_if(*this, [door](const Parameter& row) { return !is_at(row.doors, door); });
+  }
 };
 
 /// "--interval", "FILE"; "interval" over HTTP.
@@ -140,7 +144,7 @@ class Reading {
   void take(const Parameter& parameter, std::span<const std::string> values);
   /// What was given, by the names of the parameters.
   [[nodiscard]] const auto& given() const noexcept { return given_; }
-  /// Looks at what is missing, and at what was given together.
+  /// Looks at what is missing, and at what was given together, of the parameters of the door.
   void check(std::span<const Parameter> parameters) const;
   /// Whether something waits for the terrain's units.
   [[nodiscard]] bool waits() const noexcept { return !waiting_.empty(); }

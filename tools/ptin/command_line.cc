@@ -153,8 +153,7 @@ const char* program_summary() noexcept {
 
 Declared declared_of(const Command& command, Context& context) {
   Declared declared = command.declare(context);
-  std::erase_if(declared.parameters,
-                [](const auto& row) { return !is_at(row.doors, ask::Door::kProgram); });
+  declared.parameters.keep(ask::Door::kProgram);
   declared.parameters.insert(declared.parameters.begin(), help_row());
   add_common(declared.parameters, context);
   return declared;

@@ -36,6 +36,7 @@ template <typename Values>
 [[nodiscard]] ask::Parameters rows_of(Values& values) {
   ask::Parameters rows;
   add_question(rows, values);
+  rows.keep(ask::Door::kService);
   return rows;
 }
 /// Reads the parameters of a question into what holds them.  @throws http::Problem 400

@@ -13,16 +13,6 @@ namespace ptin::serve {
 
 namespace {
 
-/// The numbers of a range, as a schema tells them.
-void add_range(Json& schema, const ask::Parameter& row) {
-  const NumberRange& range = ask::range_at(row, ask::Door::kService);
-  const bool is_whole = ask::is_whole(row);
-  const double least = is_whole ? std::max(0.0, range.least) : range.least;
-  if (least > NumberRange::kFinite.least) schema["minimum"] = least;
-  if (range.is_above) schema["exclusiveMinimum"] = true;
-  if (range.most < NumberRange::kFinite.most) schema["maximum"] = range.most;
-}
-
 Json schema_of(const ask::Parameter& row) {
   if (ask::is_flag(row)) return {{"type", "boolean"}};
   if (ask::is_text(row)) {
@@ -30,29 +20,36 @@ Json schema_of(const ask::Parameter& row) {
     for (const std::string_view choice : row.choices) schema["enum"].push_back(choice);
     return schema;
   }
-  Json number = {{"type", ask::is_whole(row) ? "integer" : "number"}};
-  add_range(number, row);
+  const NumberRange& range = ask::range_at(row, ask::Door::kService);
+  const bool is_whole = ask::is_whole(row);
+  const double least = is_whole ? std::max(0.0, range.least) : range.least;
+  Json number = {{"type", is_whole ? "integer" : "number"}};
+  if (least > NumberRange::kFinite.least) number["minimum"] = least;
+  if (range.is_above) number["exclusiveMinimum"] = true;
+  if (range.most < NumberRange::kFinite.most) number["maximum"] = range.most;
   if (!ask::is_list(row)) return number;
   Json schema = {{"type", "array"}, {"items", std::move(number)}, {"minItems", row.least_values}};
   if (row.most_values != ask::kAnyNumberOfValues) schema["maxItems"] = row.most_values;
   return schema;
 }
 
-/// The example as a value of the parameter's type.
-Json example_of(const ask::Parameter& row) {
+/// Adds the help, and the example as a value of the parameter's type.
+void add_help(Json& json, const ask::Parameter& row) {
+  json["description"] = ask::help_at(row, ask::Door::kService);
   const std::string example(row.example);
-  if (ask::is_list(row)) return Json::parse("[" + example + "]");
-  return ask::is_text(row) ? Json(example) : Json::parse(example);
+  if (example.empty()) return;
+  json["example"] = ask::is_list(row)   ? Json::parse("[" + example + "]")
+                    : ask::is_text(row) ? Json(example)
+                                        : Json::parse(example);
 }
 
 Json parameter_json(const ask::Parameter& row) {
   Json json = {{"name", row.name},
                {"in", "query"},
                {"required", is_at(row.required, ask::Door::kService)},
-               {"description", ask::help_at(row, ask::Door::kService)},
                {"schema", schema_of(row)}};
   if (ask::is_list(row)) json["explode"] = false;  // Values stand between commas.
-  if (!row.example.empty()) json["example"] = example_of(row);
+  add_help(json, row);
   return json;
 }
 
@@ -145,11 +142,9 @@ Json responses_of(const Endpoint& endpoint) {
 Json body_of(const Endpoint& endpoint) {
   Json schema = {{"type", "object"}, {"properties", Json::object()}};
   for (const ask::Parameter& row : endpoint.parameters) {
-    if (!is_at(row.doors, ask::Door::kService)) continue;
     // A value of JSON may be text, too: no one type says so.
     Json property = row.is_json ? Json::object() : schema_of(row);
-    property["description"] = ask::help_at(row, ask::Door::kService);
-    if (!row.example.empty()) property["example"] = example_of(row);
+    add_help(property, row);
     schema["properties"][std::string(row.name)] = std::move(property);
     if (is_at(row.required, ask::Door::kService)) schema["required"].push_back(row.name);
   }
@@ -171,9 +166,7 @@ Json operation_of(const Endpoint& endpoint, bool is_post) {
   }
   if (!is_post) {
     for (const ask::Parameter& row : endpoint.parameters) {
-      if (is_at(row.doors, ask::Door::kService)) {
-        operation["parameters"].push_back(parameter_json(row));
-      }
+      operation["parameters"].push_back(parameter_json(row));
     }
     return operation;
   }

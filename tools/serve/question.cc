@@ -17,11 +17,7 @@ using http::Problem;
 
 std::string list_of(std::span<const ask::Parameter> rows) {
   std::string list;
-  for (const ask::Parameter& row : rows) {
-    if (is_at(row.doors, ask::Door::kService)) {
-      list.append(list.empty() ? "" : ", ").append(row.name);
-    }
-  }
+  for (const ask::Parameter& row : rows) list.append(list.empty() ? "" : ", ").append(row.name);
   return list.empty() ? "none" : list;
 }
 
@@ -47,7 +43,7 @@ void Question::read(std::span<const ask::Parameter> rows) const {
   ask::Reading reading(ask::Door::kService);
   try {
     for (const ask::Parameter& row : rows) {
-      const Value* const value = is_at(row.doors, ask::Door::kService) ? find(row.name) : nullptr;
+      const Value* const value = find(row.name);
       if (value != nullptr) reading.take(row, values_of(row, value->text));
     }
     reading.check(rows);
@@ -86,9 +82,8 @@ void Question::take_body(const http::Request& request, std::span<const ask::Para
 }
 
 void Question::take(std::string name, Value value, std::span<const ask::Parameter> rows) {
-  const bool is_known = std::any_of(rows.begin(), rows.end(), [&](const ask::Parameter& row) {
-    return row.name == name && is_at(row.doors, ask::Door::kService);
-  });
+  const bool is_known = std::any_of(rows.begin(), rows.end(),
+                                    [&](const ask::Parameter& row) { return row.name == name; });
   if (!is_known) {
     throw Problem(400, "no parameter of this question is called \"" + tools::shown(name) +
                            "\"; it has " + list_of(rows))
