@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -13,12 +14,55 @@
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
 #include "tools/ptin/cli.h"
-#include "tools/ptin/help_text.h"
 #include "tools/ptin/usage_fault.h"
 
 namespace ptin::tools {
 
 namespace {
+
+// No line of help is longer than a terminal of 100 columns.
+constexpr std::size_t kHelpColumns = 100;
+
+/// A name on the left, and what it is on the right, from a column on.
+std::string in_two_columns(const std::string& name, const std::string& text, std::size_t column) {
+  std::string all;
+  std::size_t width = 0;  // of the last line
+  for (const std::string& line : wrapped(name, kHelpColumns - 6)) {
+    const std::string indented = (all.empty() ? "  " : "\n      ") + line;
+    all += indented;
+    width = indented.size();
+  }
+  if (text.empty()) return all + "\n";
+  bool is_beside = width + 1 < column;
+  for (const std::string& line : wrapped(text, kHelpColumns - column)) {
+    all += is_beside ? std::string(column - width, ' ') : "\n" + std::string(column, ' ');
+    all += line;
+    is_beside = false;
+  }
+  return all + "\n";
+}
+
+/// Paragraphs with their lines broken anew. A line that begins with a blank is an example, and stays
+/// as it is.
+std::string reflowed(const std::string& text) {
+  std::istringstream lines(text);
+  std::string all, paragraph;
+  const auto end_paragraph = [&] {
+    if (paragraph.empty()) return;
+    for (const std::string& line : wrapped(paragraph, kHelpColumns)) all += line + "\n";
+    paragraph.clear();
+  };
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.front() == ' ') {
+      end_paragraph();
+      all += line + "\n";
+    } else {
+      paragraph += (paragraph.empty() ? "" : " ") + line;
+    }
+  }
+  end_paragraph();
+  return all;
+}
 
 /// CLI11's help with its long lines broken between words.
 class HelpFormatter : public CLI::Formatter {
