@@ -48,31 +48,29 @@ void add_question(Parameters& rows, HighestQuestion& question) {
   add_crs(rows);
 }
 
-Fields<HighestAnswer> highest_fields() {
-  Fields<HighestResult> point;
-  point.add_parts("", vertex_fields(), &HighestResult::point);
-  point.add_parts("", point_fields(), [](const HighestResult& r) { return &r; });
-  point.add("at_vertex", "boolean", "", "False: on the region's border.",
-            &HighestResult::at_vertex);
-
-  using Row = HighestAnswer;
+Fields<HighestResult> highest_fields(bool lowest) {
+  using Row = HighestResult;
+  Fields<Row> point;
+  point.add_parts("", vertex_fields(), &Row::point);
+  point.add_parts("", point_fields(), [](const Row& r) { return &r; });
+  point.add("at_vertex", "boolean", "", "False: on the region's border.", &Row::at_vertex);
   Fields<Row> fields;
   fields.add("state", "string", "",
              "Unless it is `surface` there is no point: the region lies outside of the hull, or "
              "holds nothing but voids.",
-             [](const Row& a) { return tools::name_of(a.result->state); });
+             [](const Row& r) { return tools::name_of(r.state); });
   fields.next = Told::kProgram;
   fields.add("lowest", "boolean", "",
-             "The lowest point was asked for; \"highest\" below then means that.", &Row::lowest);
+             "The lowest point was asked for; \"highest\" below then means that.",
+             [lowest](const Row&) { return lowest; });
   fields.add_object(
       "point", "object or null",
       "The highest point of the surface in the region: one of several, where there are several.",
-      point,
-      [](const Row& a) { return a.result->state == PointState::kSurface ? a.result : nullptr; });
+      point, [](const Row& r) { return r.state == PointState::kSurface ? &r : nullptr; });
   fields.add_array("vertices",
                    "The highest vertices in the region that touch the surface, falling, equal ones "
                    "from south to north and west to east; at most as many as `-k` says.",
-                   vertex_fields(), [](const Row& a) { return &a.result->vertices; });
+                   vertex_fields(), &Row::vertices);
   return fields;
 }
 

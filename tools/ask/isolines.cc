@@ -41,11 +41,11 @@ Fields<IsolineRow> isoline_row_fields() {
   return fields;
 }
 
-Fields<BandRow> band_row_fields() {
-  Fields<BandRow> fields;
-  fields.add("ID", "integer", "", "From 0.", &BandRow::id);
-  fields.add("elev_min", "number", kHeightUnit, "Of the band.", &BandRow::low);
-  fields.add("elev_max", "number", kHeightUnit, "Of the band.", &BandRow::high);
+Fields<IsolineRow> band_row_fields() {
+  Fields<IsolineRow> fields;
+  fields.add("ID", "integer", "", "From 0.", &IsolineRow::id);
+  fields.add("elev_min", "number", kHeightUnit, "Of the band.", &IsolineRow::elevation);
+  fields.add("elev_max", "number", kHeightUnit, "Of the band.", &IsolineRow::upper);
   return fields;
 }
 

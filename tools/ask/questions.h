@@ -114,11 +114,7 @@ void add_question(Parameters& rows, ViewshedQuestion& question);
 /// Fills in what the ground tells below the eye, which is set: lengths of map units, and the Earth.
 void set_ground(ViewshedRequest& request, const Ground& ground);
 
-struct ViewshedAnswer {
-  const Viewshed* seen;
-  bool of_pixels = false;  ///< Else of vertices.
-};
-[[nodiscard]] Fields<ViewshedAnswer> viewshed_fields();
+[[nodiscard]] Fields<Viewshed> viewshed_fields();
 /// A vertex as a feature.
 [[nodiscard]] Fields<Viewshed::Target> target_fields();
 
@@ -138,20 +134,16 @@ struct IsolineStep {
   std::uint64_t splits = 0;      ///< Applied to T0 by then.
   double certified_error = 0.0;  ///< Of the TIN whose isolines these are.
 };
-/// A line as a feature.
+/// A line as a feature; or what lies between two levels.
 struct IsolineRow {
   std::uint64_t id = 0;
-  double elevation = 0.0;
+  double elevation = 0.0;  ///< Of a band the lower level.
   bool ring = false;
   const IsolineStep* step = nullptr;  ///< Null: there are no steps.
+  double upper = 0.0;                 ///< Of a band.
 };
 [[nodiscard]] Fields<IsolineRow> isoline_row_fields();
-/// What lies between two levels, as a feature.
-struct BandRow {
-  std::uint64_t id = 0;
-  double low = 0.0, high = 0.0;
-};
-[[nodiscard]] Fields<BandRow> band_row_fields();
+[[nodiscard]] Fields<IsolineRow> band_row_fields();
 
 struct IsolineAnswer {
   const Isolines* isolines;
@@ -172,11 +164,8 @@ struct HighestQuestion {
 };
 void add_question(Parameters& rows, HighestQuestion& question);
 
-struct HighestAnswer {
-  const HighestResult* result;
-  bool lowest = false;
-};
-[[nodiscard]] Fields<HighestAnswer> highest_fields();
+/// @param lowest  The lowest point was asked for.
+[[nodiscard]] Fields<HighestResult> highest_fields(bool lowest = false);
 
 /// The point, or one of the vertices, as a feature.
 struct HighestPlace {

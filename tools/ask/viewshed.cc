@@ -56,37 +56,35 @@ void set_ground(ViewshedRequest& request, const Ground& ground) {
   request.curvature.earth_diameter = ground.earth_diameter;
 }
 
-Fields<ViewshedAnswer> viewshed_fields() {
-  using Row = ViewshedAnswer;
-  using Count = std::uint64_t Viewshed::*;
+Fields<Viewshed> viewshed_fields() {
+  using Row = Viewshed;
+  using Count = std::uint64_t Row::*;
   const auto counts_of = [](Count visible, Count hidden, Count undecided) {
-    Fields<Viewshed> counts;
+    Fields<Row> counts;
     counts.add("visible", "integer", "", "For certain.", visible);
     counts.add("hidden", "integer", "", "For certain.", hidden);
     counts.add("undecided", "integer", "", "At a level of detail.", undecided);
     return counts;
   };
-  const Fields<Viewshed> pixels =
-      counts_of(&Viewshed::visible_pixels, &Viewshed::hidden_pixels, &Viewshed::undecided_pixels);
-  const Fields<Viewshed> vertices = counts_of(
-      &Viewshed::visible_vertices, &Viewshed::hidden_vertices, &Viewshed::undecided_vertices);
+  const Fields<Row> pixels =
+      counts_of(&Row::visible_pixels, &Row::hidden_pixels, &Row::undecided_pixels);
+  const Fields<Row> vertices =
+      counts_of(&Row::visible_vertices, &Row::hidden_vertices, &Row::undecided_vertices);
   Fields<Row> fields;
   fields.next = Told::kService;
-  fields.add_parts("", vertices, &Row::seen);
+  fields.add_parts("", vertices, [](const Row& r) { return &r; });
   fields.next = Told::kAll;
-  fields.add("eye_height", "number", kHeightUnit, "Of the observer, absolute.",
-             [](const Row& a) { return a.seen->eye_height; });
+  fields.add("eye_height", "number", kHeightUnit, "Of the observer, absolute.", &Row::eye_height);
   fields.next = Told::kProgram;
-  fields.add("width", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
-             [](const Row& a) { return a.seen->width; });
-  fields.add("height", "integer", "pixels", "Of the raster; 0 where the output is a layer.",
-             [](const Row& a) { return a.seen->height; });
+  constexpr std::string_view kOfRaster = "Of the raster; 0 where the output is a layer.";
+  fields.add("width", "integer", "pixels", kOfRaster, &Row::width);
+  fields.add("height", "integer", "pixels", kOfRaster, &Row::height);
   fields.add_object("pixels", "object or null",
                     "Pixels that are targets; null where the output is a layer.", pixels,
-                    [](const Row& a) { return a.of_pixels ? a.seen : nullptr; });
+                    [](const Row& r) { return r.width > 0 ? &r : nullptr; });
   fields.add_object("vertices", "object or null",
                     "Vertices that are targets; null where the output is a raster.", vertices,
-                    [](const Row& a) { return a.of_pixels ? nullptr : a.seen; });
+                    [](const Row& r) { return r.width > 0 ? nullptr : &r; });
   return fields;
 }
 

@@ -227,6 +227,7 @@ ParsedWords parse_words(const std::vector<std::string>& words, Context& context,
                  .append(exit_statuses()));
   CLI::App* asked = &app;
   ParsedWords parsed;
+  parsed.words = words;
   parsed.declared.parameters = {help_row()};
   parsed.declared.parameters.add("version", static_cast<bool*>(nullptr), "", "");
   for (const Command& command : all) {
@@ -244,8 +245,7 @@ ParsedWords parse_words(const std::vector<std::string>& words, Context& context,
     return parsed;
   }
   const ask::Parameters& rows = parsed.declared.parameters;
-  const UsageOf usage{parsed.command == nullptr ? "" : words[0], rows, words};
-  if (const std::string word = one_hyphen_too_few(usage); !word.empty()) {
+  if (const std::string word = one_hyphen_too_few(rows, words); !word.empty()) {
     parsed.fault = word + " has one hyphen; the option is -" + word;
     return parsed;
   }
@@ -257,15 +257,15 @@ ParsedWords parse_words(const std::vector<std::string>& words, Context& context,
     parsed.status = app.exit(success);
   } catch (const CLI::ParseError& error) {
     parsed.fault =
-        usage_fault(usage, error.what(), given_in(*asked, error.what()), asked->remaining());
+        usage_fault(parsed, error.what(), given_in(*asked, error.what()), asked->remaining());
     if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return parsed;
     try {
       context.reading->check(rows);
     } catch (const Error& missing) {
-      parsed.fault = usage_fault(usage, missing.what());
+      parsed.fault = usage_fault(parsed, missing.what());
     }
   } catch (const Error& error) {
-    parsed.fault = usage_fault(usage, error.what());
+    parsed.fault = usage_fault(parsed, error.what());
   }
   return parsed;
 }

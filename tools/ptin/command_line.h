@@ -32,6 +32,7 @@ void read_words(ask::Parameters rows, const std::vector<std::string>& words);
 
 /// What became of the words of a command line.
 struct ParsedWords {
+  std::span<const std::string> words{};
   const Command* command = nullptr;  ///< Null: they name none.
   Declared declared;                 ///< Its values are where its rows have them.
   std::string fault;                 ///< Not empty: why the words mean nothing.

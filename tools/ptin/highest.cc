@@ -59,7 +59,7 @@ int run_highest(const HighestOptions& options, const Context& context) {
     print_text(result, options, !terrain.store().facts().free_of_voids);
     return kExitDone;
   }
-  print_answer({}, ask::highest_fields(), {&result, request.lowest},
+  print_answer({}, ask::highest_fields(request.lowest), result,
                ask::facts_of(result, terrain.store(), crs, &asked.transformed));
   return kExitDone;
 }

@@ -174,7 +174,8 @@ std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelS
     }
     const double low = band == 0 ? facts.min_height : levels.height(band - 1);
     const double high = band == levels.size() ? facts.max_height : levels.height(band);
-    file.add(std::move(parts), ask::layer_values_of(fields.values_of({features, low, high})));
+    file.add(std::move(parts),
+             ask::layer_values_of(fields.values_of({features, low, false, nullptr, high})));
     ++features;
   }
   file.publish();

@@ -30,10 +30,12 @@ std::string did_you_mean(const std::string& name) {
   return name.empty() ? "" : "; did you mean " + name + "?";
 }
 
-std::string name_of(const ask::Parameter& row) { return ask::name_at(row, ask::Door::kProgram); }
+std::string option_name(const ask::Parameter& row) {
+  return ask::name_at(row, ask::Door::kProgram);
+}
 
-bool has_option(const UsageOf& usage, const std::string& name) {
-  return std::any_of(usage.rows.begin(), usage.rows.end(), [&](const ask::Parameter& row) {
+bool has_option(const ask::Parameters& rows, const std::string& name) {
+  return std::any_of(rows.begin(), rows.end(), [&](const ask::Parameter& row) {
     const std::vector<std::string> names = names_of(row);
     return std::find(names.begin(), names.end(), name) != names.end();
   });
@@ -41,21 +43,21 @@ bool has_option(const UsageOf& usage, const std::string& name) {
 
 /// The first word that can only be meant as an option and is none; else empty. A number below 0 and
 /// a single hyphen are values.
-std::string unknown_option(const UsageOf& usage) {
+std::string unknown_option(const ParsedWords& usage) {
   for (const std::string& word : usage.words) {
     if (word == "--") break;
     const bool is_number = word.size() > 1 && word[1] >= '0' && word[1] <= '9';
     if (word.size() < 2 || word[0] != '-' || is_number) continue;
     const bool is_long = word[1] == '-';
     const std::string name = is_long ? word.substr(0, word.find('=')) : word.substr(0, 2);
-    if (!has_option(usage, name)) return is_long ? name : word;
+    if (!has_option(usage.declared.parameters, name)) return is_long ? name : word;
   }
   return {};
 }
 
-std::string nearest_option(const UsageOf& usage, const std::string& word) {
+std::string nearest_option(const ParsedWords& usage, const std::string& word) {
   std::vector<std::string> names;
-  for (const ask::Parameter& row : usage.rows) {
+  for (const ask::Parameter& row : usage.declared.parameters) {
     for (const std::string& name : names_of(row)) {
       if (name.starts_with("--")) names.push_back(name);
     }
@@ -73,7 +75,7 @@ std::string joined(const std::vector<std::string>& words) {
 std::string names_of_values(const ask::Parameter& row) {
   const std::string values = values_of(row);
   const bool has_names = !is_argument(row) || values.find(' ') != std::string::npos;
-  std::string names = has_names ? values : name_of(row);
+  std::string names = has_names ? values : option_name(row);
   std::replace(names.begin(), names.end(), '_', ' ');
   return names;
 }
@@ -82,7 +84,7 @@ std::string names_of_values(const ask::Parameter& row) {
 std::string values_wanted(const ask::Parameter& row) {
   const std::uint32_t count = row.least_values;
   const std::string names = names_of_values(row);
-  std::string text = is_argument(row) ? names : name_of(row);
+  std::string text = is_argument(row) ? names : option_name(row);
   if (count == 1 && (row.repeats || row.most_values > 1)) return text + " takes one value or more";
   if (count <= 1) return text + " takes one value" + (names == text ? "" : ", " + names);
   const std::string how_many = std::to_string(count) + (count == 2 ? " values with a space between"
@@ -108,32 +110,32 @@ std::string wrong_count(const ask::Parameter& row, const std::vector<std::string
 }
 
 /// The row whose name a message of CLI11's begins with.
-const ask::Parameter* row_in(const UsageOf& usage, const std::string& message) {
-  for (const ask::Parameter& row : usage.rows) {
-    if (message.starts_with(name_of(row) + ": ")) return &row;
+const ask::Parameter* row_in(const ParsedWords& usage, const std::string& message) {
+  for (const ask::Parameter& row : usage.declared.parameters) {
+    if (message.starts_with(option_name(row) + ": ")) return &row;
   }
   return nullptr;
 }
 
 /// "FILE X_Y" of `ptin locate FILE X Y`.
-std::string arguments_of(const UsageOf& usage) {
+std::string arguments_of(const ParsedWords& usage) {
   std::string all;
-  for (const ask::Parameter& row : usage.rows) {
+  for (const ask::Parameter& row : usage.declared.parameters) {
     if (is_argument(row)) all += " " + names_of_values(row);
   }
   return all;
 }
 
-std::string too_many_words(const UsageOf& usage, const std::string& message,
+std::string too_many_words(const ParsedWords& usage, const std::string& message,
                            const std::vector<std::string>& extra) {
   const std::string words = extra.empty() ? message.substr(message.find(": ") + 2) : joined(extra);
   return words + (extra.size() == 1 ? " is a word" : " are words") + " too many: ptin" +
-         (usage.command.empty() ? "" : " " + usage.command) + " takes" + arguments_of(usage) +
-         " and options; what has blanks in it wants quotes";
+         (usage.command == nullptr ? "" : std::string(" ") + usage.command->name) + " takes" +
+         arguments_of(usage) + " and options; what has blanks in it wants quotes";
 }
 
 /// A message of CLI11's in our words; those that are sentences stay as they are.
-std::string in_our_words(const UsageOf& usage, const std::string& message,
+std::string in_our_words(const ParsedWords& usage, const std::string& message,
                          const std::vector<std::string>& given,
                          const std::vector<std::string>& extra) {
   if (message.find(" not expected: ") != std::string::npos) {
@@ -147,10 +149,10 @@ std::string in_our_words(const UsageOf& usage, const std::string& message,
 
 }  // namespace
 
-std::string one_hyphen_too_few(const UsageOf& usage) {
-  for (const std::string& word : usage.words) {
+std::string one_hyphen_too_few(const ask::Parameters& rows, std::span<const std::string> words) {
+  for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
-    if (name.size() > 2 && name[0] == '-' && name[1] != '-' && has_option(usage, "-" + name))
+    if (name.size() > 2 && name[0] == '-' && name[1] != '-' && has_option(rows, "-" + name))
       return name;
   }
   return {};
@@ -167,7 +169,7 @@ std::string unknown_subcommand_sentence(const std::string& word) {
                                                  : nearest_name(word, names));
 }
 
-std::string usage_fault(const UsageOf& usage, std::string message,
+std::string usage_fault(const ParsedWords& usage, std::string message,
                         const std::vector<std::string>& given,
                         const std::vector<std::string>& extra) {
   // CLI11 takes an option that it does not know, and what follows it, for further values of other

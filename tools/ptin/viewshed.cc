@@ -165,7 +165,7 @@ void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFil
             const CrsFacts& crs, const Context& context) {
   const bool raster = is_raster(options.out.output);
   if (context.json) {
-    print_answer({{"output", options.out.output}}, ask::viewshed_fields(), {&seen, raster},
+    print_answer({{"output", options.out.output}}, ask::viewshed_fields(), seen,
                  ask::facts_of(seen, store, crs));
   } else if (!context.quiet) {
     const std::uint64_t visible = raster ? seen.visible_pixels : seen.visible_vertices;

@@ -27,7 +27,6 @@ constexpr const char *kColumns = "resolution-x", *kRows = "resolution-y";
 struct AreaQuestion {
   LocateRequest request;
   std::optional<std::uint64_t> columns, rows;
-  CoverageNames names;
 };
 
 void add_question(ask::Parameters& rows, AreaQuestion& question) {
@@ -40,7 +39,6 @@ void add_question(ask::Parameters& rows, AreaQuestion& question) {
       .at(ask::Door::kService)
       .like("50");
   rows.add(kRows, &question.rows, "", "The same along y").at(ask::Door::kService).like("50");
-  add_coverage_rows(rows, question.names);
 }
 
 constexpr double kStepsOfGrid = 64;
@@ -241,11 +239,12 @@ Coverage coverage_of(const Grid& grid, const Inner& inner, const LocateResult& r
 
 }  // namespace
 
-ask::Parameters area_parameters() { return described<AreaQuestion>(); }
+ask::Parameters area_parameters() { return with_coverage(described<AreaQuestion>()); }
 
 http::Response answer_area(const Asked& asked) {
   const ask::Format& format = format_of(asked);
   auto question = read<AreaQuestion>(asked);
+  const CoverageNames names = coverage_names(asked);
   const Places places = places_of(asked);
   const Polygon polygon = polygon_of(asked, places);
   const Grid grid = grid_of(asked, question, places, polygon);
@@ -258,8 +257,8 @@ http::Response answer_area(const Asked& asked) {
   request.limits = engine_limits(asked, inner.number.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
-  std::string text = points_in(format, asked, places, question.names, inner.at, result,
-                               coverage_of(grid, inner, result));
+  std::string text =
+      points_in(format, asked, places, names, inner.at, result, coverage_of(grid, inner, result));
   return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
                   result.exact);
 }

@@ -137,15 +137,33 @@ Json coverage_parameters(const std::string& unit) {
           {"state", state_parameter()}};
 }
 
-void add_coverage_rows(ask::Parameters& rows, CoverageNames& names) {
+namespace {
+
+void add_names(ask::Parameters& rows, CoverageNames& names) {
   rows.add(
           "parameter-name", [&names](const std::string& text) { names = names_in(text); }, "",
           "height, height_min, height_max, state, or several between commas; all without it. "
           "CoverageJSON holds these alone, other formats all")
       .at(ask::Door::kService)
       .like("height,state");
+}
+
+}  // namespace
+
+ask::Parameters with_coverage(ask::Parameters rows) {
+  CoverageNames names;
+  add_names(rows, names);
   ask::add_text(rows, "datetime", "Accepted and without effect: a terrain has no time");
   ask::add_text(rows, "z", "Accepted and without effect: a surface has one height at a position");
+  return rows;
+}
+
+CoverageNames coverage_names(const Asked& asked) {
+  CoverageNames names;
+  ask::Parameters rows;
+  add_names(rows, names);
+  asked.question.read(rows);
+  return names;
 }
 
 std::string coverage_text(const Asked& asked, const Places& places,

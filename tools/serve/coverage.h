@@ -37,8 +37,10 @@ struct Coverage {
 
 /// The names that `parameter-name` holds; empty: all that there are.
 using CoverageNames = std::vector<std::string_view>;
-/// `parameter-name`, and what OGC's clients ask with that has no effect.
-void add_coverage_rows(ask::Parameters& rows, CoverageNames& names);
+/// The same rows, and `parameter-name` with what OGC's clients ask with that has no effect.
+[[nodiscard]] ask::Parameters with_coverage(ask::Parameters rows);
+/// The names of `parameter-name`.  @throws http::Problem 400  there is no such name
+[[nodiscard]] CoverageNames coverage_names(const Asked& asked);
 
 /// Point or MultiPoint.
 [[nodiscard]] Coverage coverage_at(std::span<const MapPoint> positions,

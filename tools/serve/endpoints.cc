@@ -5,6 +5,7 @@
 
 #include "tools/ask/questions.h"
 #include "tools/serve/answer_parts.h"
+#include "tools/serve/coverage.h"
 #include "tools/serve/endpoint.h"
 #include "tools/serve/questions.h"
 
@@ -89,9 +90,11 @@ std::vector<Endpoint> made_table() {
       {"/collections/{id}", "collection", false, "One terrain: extent, CRS, questions", none,
        kPageFormats, Lane::kPoint, Reserves::kNothing, answer_collection},
       {"/collections/{id}/position", "position", true, "Heights at positions",
-       position_parameters(), kPositionFormats, Lane::kPoint, Reserves::kQuarter, answer_position},
+       with_coverage(described<LocateRequest>()), kPositionFormats, Lane::kPoint,
+       Reserves::kQuarter, answer_position},
       {"/collections/{id}/trajectory", "trajectory", true, "Heights along lines, as a coverage",
-       trajectory_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_trajectory},
+       with_coverage(described<ProfileRequest>()), kHeightFormats, Lane::kTile, Reserves::kQuarter,
+       answer_trajectory},
       {"/collections/{id}/area", "area", true, "Heights on a grid within a polygon",
        area_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_area},
       {"/collections/{id}/mesh", "mesh", false, "A mesh of a window", mesh_parameters(),

@@ -22,7 +22,7 @@ http::Response answer_highest(const Asked& asked) {
   request.limits = engine_limits(asked, request.listed * kAnswerBytesOfPlace);
   const HighestResult result = asked.terrain().highest(request);
   const std::vector<ask::HighestPlace> all = ask::places_of(result);
-  Json more = ask::highest_fields().told(kObject).object_of({&result});
+  Json more = ask::highest_fields().told(kObject).object_of(result);
   more["ptin:certainty"] = certainty_of(asked, result);
   std::string text = features_text(
       asked, ask::highest_place_fields(), all.size(), [&](std::size_t i) { return all[i]; },

@@ -14,16 +14,6 @@ namespace ptin::serve {
 
 namespace {
 
-struct PositionQuestion {
-  LocateRequest request;
-  CoverageNames names;
-};
-
-void add_question(ask::Parameters& rows, PositionQuestion& question) {
-  ask::add_question(rows, question.request);
-  add_coverage_rows(rows, question.names);
-}
-
 /// The same with the triangles, in the CRS of the client, for a program that shows them.
 std::string plain_json(std::span<const MapPoint> client, const LocateResult& result,
                        const Asked& asked, const Places& places) {
@@ -38,25 +28,23 @@ std::string plain_json(std::span<const MapPoint> client, const LocateResult& res
 
 }  // namespace
 
-ask::Parameters position_parameters() { return described<PositionQuestion>(); }
-
 http::Response answer_position(const Asked& asked) {
   const ask::Format& format = format_of(asked);
-  auto question = read<PositionQuestion>(asked);
+  auto request = read<LocateRequest>(asked);
+  const CoverageNames names = coverage_names(asked);
   const Places places = places_of(asked);
   const std::vector<MapPoint> client = points_of_wkt(asked.question.text("coords"), "coords");
   check_count(client.size(), asked.options.question.points, "positions", "points", "coords");
   std::vector<MapPoint> at = client;
   places.to_terrain(at);
-  LocateRequest& request = question.request;
   check_detail(asked, request.detail);
   request.limits = engine_limits(asked, at.size() * kAnswerBytesOfPlace);
   const LocateResult result = asked.terrain().locate(at, request);
 
   const auto value = [&](std::size_t i) { return value_of(result.points[i]); };
   std::string text = format.name == "json" ? plain_json(client, result, asked, places)
-                                           : points_in(format, asked, places, question.names,
-                                                       client, result, coverage_at(client, value));
+                                           : points_in(format, asked, places, names, client, result,
+                                                       coverage_at(client, value));
   return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
                   result.exact);
 }

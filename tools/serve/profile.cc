@@ -17,16 +17,6 @@ namespace ptin::serve {
 
 namespace {
 
-struct TrajectoryQuestion {
-  ProfileRequest request;
-  CoverageNames names;
-};
-
-void add_question(ask::Parameters& rows, TrajectoryQuestion& question) {
-  ask::add_question(rows, question.request);
-  add_coverage_rows(rows, question.names);
-}
-
 /// What is told of the profile as a whole.
 Json facts_of(const AlongLines& along, const Asked& asked) {
   Json facts = certainty_of(asked, along.profile);
@@ -112,15 +102,12 @@ http::Response respond(const Asked& asked, const ProfileRequest& request,
 
 }  // namespace
 
-ask::Parameters trajectory_parameters() { return described<TrajectoryQuestion>(); }
-
 http::Response answer_profile(const Asked& asked) {
   return respond(asked, read<ProfileRequest>(asked), {});
 }
 
 http::Response answer_trajectory(const Asked& asked) {
-  const auto question = read<TrajectoryQuestion>(asked);
-  return respond(asked, question.request, question.names);
+  return respond(asked, read<ProfileRequest>(asked), coverage_names(asked));
 }
 
 }  // namespace ptin::serve

@@ -28,8 +28,6 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 
 // The parameters that they take, as rows that describe them, but for `f`.
 [[nodiscard]] ask::Parameters viewer_parameters();
-[[nodiscard]] ask::Parameters position_parameters();
-[[nodiscard]] ask::Parameters trajectory_parameters();
 [[nodiscard]] ask::Parameters area_parameters();
 [[nodiscard]] ask::Parameters elevation_parameters();
 [[nodiscard]] ask::Parameters mesh_parameters();

@@ -77,7 +77,7 @@ std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& p
     places.from_terrain({&p, 1});
     add_point(text, p);
   };
-  Json more = ask::viewshed_fields().told(kObject).object_of({&seen});
+  Json more = ask::viewshed_fields().told(kObject).object_of(seen);
   more["ptin:certainty"] = certainty_of(asked, seen);
   return features_text(
       asked, ask::target_fields(), seen.vertices.size(),
