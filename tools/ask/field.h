@@ -4,6 +4,8 @@
 // value is found. JSON, CSV, layers, GeoJSON, OpenAPI and the lists of tools/API.md read rows.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
