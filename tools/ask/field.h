@@ -135,8 +135,12 @@ class Fields : public std::vector<Field> {
       return array;
     });
     for (const Field& field : parts) {
-      push_back(
-          {name + "[]." + field.name, field.type, field.unit, field.meaning, Told::kList & next});
+      Told doors{};  // Where the parts have the field, in whatever form.
+      for (const Told door : {Told::kProgram, Told::kService}) {
+        if ((field.told & door) != Told{}) doors = doors | door;
+      }
+      push_back({name + "[]." + field.name, field.type, field.unit, field.meaning,
+                 Told::kList & doors & next});
     }
   }
 
