@@ -33,6 +33,9 @@ std::vector<std::byte>& input() {
 
 }  // namespace
 
+/// Valid until the next call of feed().
+const ptin::Tin& ptin::viewer::tin() { return reader().tin(); }
+
 /// Room for the bytes that are fed next. Valid until the next call.
 PTIN_EXPORT(room) std::byte* room(std::size_t bytes) {
   input().resize(bytes);
@@ -53,7 +56,6 @@ PTIN_EXPORT(splits) double splits() { return static_cast<double>(reader().splits
 PTIN_EXPORT(splitsInAll) double splits_in_all() {
   return static_cast<double>(reader().splits_in_all());
 }
-PTIN_EXPORT(bytesUsed) double bytes_used() { return static_cast<double>(reader().bytes_used()); }
 PTIN_EXPORT(certifiedError) double certified_error() { return reader().certificate().error; }
 PTIN_EXPORT(certifiedDeviation) double certified_deviation() {
   return reader().certificate().deviation;
@@ -65,16 +67,6 @@ PTIN_EXPORT(reliefError) double relief_error() {
 PTIN_EXPORT(reliefDeviation) double relief_deviation() {
   return ptin::certificate_by_relief(reader().facts()).deviation;
 }
-
-/// The mesh, as engine/mesh/tin.h has it in memory. Valid until the next call of feed().
-PTIN_EXPORT(vertexCount) std::size_t vertex_count() { return reader().tin().vertices.size(); }
-PTIN_EXPORT(vertices) const ptin::Vertex* vertices() { return reader().tin().vertices.data(); }
-PTIN_EXPORT(hasHeight) const std::uint8_t* has_height() { return reader().tin().has_height.data(); }
-PTIN_EXPORT(triangleCount) std::size_t triangle_count() { return reader().tin().triangles.size(); }
-PTIN_EXPORT(triangles) const ptin::Triangle* triangles() { return reader().tin().triangles.data(); }
-PTIN_EXPORT(classes) const ptin::TriangleClass* classes() { return reader().tin().classes.data(); }
-static_assert(sizeof(ptin::Vertex) == 16 && offsetof(ptin::Vertex, height) == 8 &&
-              sizeof(ptin::Triangle) == 24 && sizeof(ptin::TriangleClass) == 1);
 
 PTIN_EXPORT(facts) const PlainFacts* facts() {
   static PlainFacts plain;
@@ -97,4 +89,15 @@ PTIN_EXPORT(metresPerMapUnit) const ptin::MapPoint* metres_per_map_unit(double x
   const ptin::MapPoint per_unit = on.per_map_unit({x, y});
   metres = {per_unit.x * on.metres_per_height, per_unit.y * on.metres_per_height};
   return &metres;
+}
+
+/// What lines of sight are drawn with, in the unit of heights: how much lower what lies at distance 1 looks, and how far light
+/// goes in a second.
+PTIN_EXPORT(curvature) double curvature() {
+  ptin::Curvature curvature;
+  curvature.earth_diameter = ptin::viewer::ground().earth_diameter;
+  return curvature.drop_at(1.0);
+}
+PTIN_EXPORT(lightSpeed) double light_speed() {
+  return ptin::viewer::kSpeedOfLight / ptin::viewer::ground().metres_per_height;
 }

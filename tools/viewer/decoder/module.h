@@ -10,11 +10,15 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "engine/mesh/tin.h"
 #include "storage/store_facts.h"
 
 #define PTIN_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
 namespace ptin::viewer {
+
+/// The mesh that the module holds and exports (module.cc), as engine/mesh/tin.h has it in memory.
+[[nodiscard]] const Tin& tin();
 
 /// Facts in the order in which src/decoder.ts reads them, and src/questions.ts hands them on.
 struct PlainFacts {

@@ -26,7 +26,6 @@ using ptin::viewer::PlainFacts;
 
 constexpr std::uint64_t kAnswerBytes = std::uint64_t{256} << 20;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSpeedOfLight = 299792458.0;  // metres a second
 
 /// The mesh that is asked, as the decoder had it, and what the host knows of it.
 struct Asked {
@@ -64,6 +63,8 @@ void add(const std::optional<ptin::SightPoint>& point) {
 
 }  // namespace
 
+const ptin::Tin& ptin::viewer::tin() { return asked().tin; }
+
 /// Room for a mesh, which the host fills: the arrays of engine/mesh/tin.h, and the facts. Valid until the next call.
 PTIN_EXPORT(makeRoom) void make_room(std::size_t vertices, std::size_t triangles) {
   ptin::Tin& tin = asked().tin;
@@ -73,10 +74,6 @@ PTIN_EXPORT(makeRoom) void make_room(std::size_t vertices, std::size_t triangles
   tin.triangles.resize(triangles);
   tin.classes.resize(triangles);
 }
-PTIN_EXPORT(vertices) ptin::Vertex* vertices() { return asked().tin.vertices.data(); }
-PTIN_EXPORT(hasHeight) std::uint8_t* has_height() { return asked().tin.has_height.data(); }
-PTIN_EXPORT(triangles) ptin::Triangle* triangles() { return asked().tin.triangles.data(); }
-PTIN_EXPORT(classes) ptin::TriangleClass* classes() { return asked().tin.classes.data(); }
 PTIN_EXPORT(facts) PlainFacts* facts() { return &asked().plain; }
 
 /// Takes over the facts that were filled in, and the certificate of the stream at the places that are asked next: infinity where
@@ -128,7 +125,7 @@ const double* sight(double ax, double ay, double height_a, double bx, double by,
   ptin::SightRequest request;
   request.curvature.earth_diameter = on.earth_diameter;
   request.ground_distance = on.distance;
-  if (hertz > 0) request.wavelength = kSpeedOfLight / hertz / on.metres_per_height;
+  if (hertz > 0) request.wavelength = ptin::viewer::kSpeedOfLight / hertz / on.metres_per_height;
   const ptin::SightResult r =
       ptin::sight_on(mesh(), {{ax, ay}, height_a, {bx, by}, height_b}, request);
   answer() = {static_cast<double>(r.verdict), r.length, r.clearance_min, r.clearance_max,

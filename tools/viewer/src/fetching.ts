@@ -30,6 +30,16 @@ export async function opened(address: string, init: RequestInit): Promise<Respon
   }
 }
 
+/** A module of the viewer, which lies beside the page. */
+export async function moduleAt(folder: string, name: string): Promise<WebAssembly.Module> {
+  const fetched = await fetch(new URL(name, folder)).catch(() => null);
+  if (fetched === null) {
+    throw new Problem('The viewer cannot be reached', `A part of it (${name}) did not come: the connection to the host broke, or there is none.`);
+  }
+  if (!fetched.ok) throw new Problem('The viewer is not whole', `A part of it (${name}) does not lie beside it.`);
+  return WebAssembly.compile(await fetched.arrayBuffer());
+}
+
 /** Throws the Problem of an answer that is none. */
 export async function checkAnswer(response: Response): Promise<void> {
   if (response.ok) return;

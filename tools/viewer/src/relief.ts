@@ -124,7 +124,6 @@ export class Relief {
     this.draw();
   }
 
-  get verticalScale(): number { return this.exaggeration.value; }
   set verticalScale(factor: number) {
     this.exaggeration.value = factor;
     this.draw();

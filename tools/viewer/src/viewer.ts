@@ -4,13 +4,14 @@
 import { type Certified, certifiedWithin } from './certified';
 import type { Certificate } from './decoder';
 import { scaleAt } from './earth';
-import { bytes, coordinates, metres, roundBelow } from './format';
+import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
-import { Inquiry, Tool } from './inquiry';
+import { Inquiry } from './inquiry';
+import { holds } from './map_window';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
 import { colour, part, speak, toast, trouble } from './page';
 import { Panel } from './panel';
-import { Settings, fromHash, toHash } from './permalink';
+import { type Settings, fromHash, toHash } from './permalink';
 import { Relief } from './relief';
 import { View } from './view';
 
@@ -18,8 +19,8 @@ interface Boot {
   source: Source | null;
   worker: Worker | null;
   early: FromWorker[];
-  query: URLSearchParams;
-  mostVertices: number;
+  /** Has the Worker open a terrain. */
+  open(source: Source): void;
 }
 
 /** Pixels by which a picture of a service's terrain may be off. */
@@ -34,7 +35,7 @@ class Viewer {
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate }) | null = null;
-  private isServed: boolean;
+  private readonly isServed: boolean;
   private linkTimer = 0;
   private viewTimer = 0;
   private spokenState = '';
@@ -48,8 +49,7 @@ class Viewer {
     this.worker = boot.worker!;
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
-    const still = matchMedia('(prefers-reduced-motion: reduce)');
-    this.view = new View(this.relief.camera, canvas, () => still.matches);
+    this.view = new View(this.relief.camera, canvas);
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
     this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
     part('viewshed-tool').hidden = !this.isServed;
@@ -104,8 +104,8 @@ class Viewer {
     const { pose } = fromHash(location.hash);
     const { width, height } = this.relief.canvas.getBoundingClientRect();
     const card = part('card').getBoundingClientRect();
-    this.view.setFrame(frame, this.exaggeration, width, card.width < width / 2 && width > height ? card.right : 0);
-    if (pose !== null) this.view.pose(pose, this.exaggeration);
+    this.view.setFrame(frame, width, card.width < width / 2 && width > height ? card.right : 0);
+    if (pose !== null) this.view.pose(pose);
     this.moved();
   }
 
@@ -124,19 +124,15 @@ class Viewer {
   private get certificate(): Certificate {
     const { certified, frame } = this;
     if (certified === null || frame === null) return { error: Infinity, deviation: Infinity };
-    return certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame, this.exaggeration));
+    return certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
   }
 
   private showCertificate(): void {
     const { status, certified, frame } = this;
     if (status === null || certified === null || frame === null) return;
-    const [west, south, east, north] = frame.bounds;
-    const isEverywhere = certified.parts.some(({ window: w, error }) =>
-      w[0] <= west && w[1] <= south && w[2] >= east && w[3] >= north && error <= status.certificate.error);
+    const isEverywhere = certified.parts.some((part) => holds(part.window, frame.bounds) && part.error <= status.certificate.error);
     this.panel.showStatus(status, status.certificate, isEverywhere);
   }
-
-  private get exaggeration(): number { return this.panel.settings.exaggeration; }
 
   /** Carries a setting out. */
   private apply(key: keyof Settings): void {
@@ -149,22 +145,12 @@ class Viewer {
       this.relief.wireframe = s.wireframe;
       this.send({ kind: 'edges', wanted: s.wireframe });
     }
-    if (key === 'exaggeration') this.setExaggeration(s.exaggeration);
+    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration;
     this.keepLink();
   }
 
-  private setExaggeration(factor: number): void {
-    const ratio = factor / this.relief.verticalScale;
-    this.relief.verticalScale = factor;
-    // What is looked at stays in the middle.
-    const { target } = this.view.controls;
-    const rise = target.z * (ratio - 1);
-    target.z += rise;
-    this.relief.camera.position.z += rise;
-  }
-
   private beforeDrawing(): boolean {
-    const moves = this.view.update((x, y) => this.relief.groundAt(x, y), this.exaggeration);
+    const moves = this.view.update((x, y) => this.relief.groundAt(x, y));
     const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
@@ -184,7 +170,7 @@ class Viewer {
     if (!this.isServed) return;
     clearTimeout(this.viewTimer);
     this.viewTimer = window.setTimeout(() => {
-      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance, this.exaggeration);
+      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance);
       this.send({ kind: 'view', wanted });
     }, 150);
   }
@@ -193,9 +179,13 @@ class Viewer {
     clearTimeout(this.linkTimer);
     this.linkTimer = window.setTimeout(() => {
       if (this.frame === null) return;
-      const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
-      history.replaceState(null, '', `${location.pathname}${location.search}#${hash}`);
+      history.replaceState(null, '', this.address);
     }, 250);
+  }
+
+  /** The address of what is shown. */
+  private get address(): string {
+    return `${location.pathname}${location.search}#${toHash(this.view.current, this.panel.settings)}`;
   }
 
   /** How long a line across the picture is where the camera looks: over ground, which the picture stretches away from its middle. */
@@ -211,7 +201,7 @@ class Viewer {
     const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
     const scale = part('scale');
     scale.querySelector('i')!.style.width = `${length * metre}px`;
-    scale.querySelector('span')!.textContent = length >= 1000 ? `${length / 1000} km` : `${Number(length.toPrecision(1))} m`;
+    scale.querySelector('span')!.textContent = length >= 1000 ? `${rounded(length / 1000, 1)} km` : `${rounded(length, 1)} m`;
   }
 
   private followPage(canvas: HTMLCanvasElement): void {
@@ -227,7 +217,7 @@ class Viewer {
     });
     addEventListener('hashchange', () => {
       const { pose } = fromHash(location.hash);
-      if (pose !== null) this.view.pose(pose, this.exaggeration);
+      if (pose !== null) this.view.pose(pose);
       this.moved();
     });
     part('home').addEventListener('click', () => { this.home(); });
@@ -270,15 +260,13 @@ class Viewer {
   }
 
   private home(): void {
-    this.view.reset(this.exaggeration);
+    this.view.reset();
     this.moved();
   }
 
   private async copyLink(): Promise<void> {
-    const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
-    const address = `${location.origin}${location.pathname}${location.search}#${hash}`;
     try {
-      await navigator.clipboard.writeText(address);
+      await navigator.clipboard.writeText(location.origin + this.address);
       toast('The link to this view is copied');
     } catch {
       toast('The browser does not let pages copy; the address line has the link');
@@ -316,10 +304,10 @@ class Viewer {
     1: () => { this.panel.set('shading', 'height'); },
     2: () => { this.panel.set('shading', 'slope'); },
     3: () => { this.panel.set('shading', 'shade'); },
-    h: () => { this.choose('height'); },
-    p: () => { this.choose('profile'); },
-    s: () => { this.choose('sight'); },
-    v: () => { if (this.isServed) this.choose('viewshed'); },
+    h: () => { this.inquiry.choose('height'); },
+    p: () => { this.inquiry.choose('profile'); },
+    s: () => { this.inquiry.choose('sight'); },
+    v: () => { if (this.isServed) this.inquiry.choose('viewshed'); },
     l: () => { void this.copyLink(); },
     '?': () => { part<HTMLDialogElement>('keys').showModal(); },
     Enter: () => {
@@ -328,10 +316,6 @@ class Viewer {
     },
     Escape: () => { this.inquiry.close(); },
   };
-
-  private choose(tool: Tool): void {
-    this.inquiry.choose(tool);
-  }
 }
 
 /** Where no terrain was named. */
@@ -350,9 +334,7 @@ function welcome(boot: Boot): void {
     box.hidden = true;
     part('card').hidden = part('tools').hidden = false;
     boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
-    boot.worker!.postMessage({
-      kind: 'open', source: boot.source, folder: new URL('.', location.href).href, mostVertices: boot.mostVertices,
-    } satisfies ToWorker);
+    boot.open(boot.source);
     start(boot);
   };
   box.querySelector<HTMLInputElement>('input[type=file]')!.addEventListener('change', (event) => {
