@@ -38,7 +38,7 @@ function built(input: string, name: string, forBuild: string[], forStream: strin
   return { store, stream };
 }
 
-/** A text grid of square cells over EPSG `crs`, as a store, and its stream. */
+/** The store of a text grid of square cells, and its stream. */
 export function gridded(
   name: string, crs: string, corner: readonly [number, number], cell: number, rows: string[][], ...options: string[]
 ): { store: string; stream: string } {
@@ -107,7 +107,7 @@ export function hill(row: number, column: number): number {
   return 600 + 500 * Math.sin(row / 9) * Math.cos(column / 11) + 60 * Math.sin(row * 1.7 + column * 2.3);
 }
 
-/** A terrain of hills from a small text grid, built once, and its stream: over degrees of five parallels; with heights in feet over metres; with voids. */
+/** Hills on a small grid, and their stream: over degrees of five parallels; with heights in feet over metres; with voids. */
 export function made(name: 'degrees' | 'feet' | 'voids', ...options: string[]): { store: string; stream: string } {
   const size = 121;
   const height = (row: number, column: number): string => {
@@ -116,5 +116,6 @@ export function made(name: 'degrees' | 'feet' | 'voids', ...options: string[]): 
   };
   const rows = Array.from({ length: size }, (_, r) => Array.from({ length: size }, (_, c) => height(r, c)));
   const crs = { degrees: 'EPSG:4326', feet: 'EPSG:32632+6360', voids: 'EPSG:32632' }[name];
-  return name === 'degrees' ? gridded(name, crs, [86, 25], 0.04, rows, ...options) : gridded(name, crs, [400000, 5000000], 50, rows, ...options);
+  if (name === 'degrees') return gridded(name, crs, [86, 25], 0.04, rows, ...options);
+  return gridded(name, crs, [400000, 5000000], 50, rows, ...options);
 }

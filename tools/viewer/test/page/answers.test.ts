@@ -57,11 +57,11 @@ test('at full detail', (t) => onPage(fast.url, async (page) => {
       e.dispatchEvent(new Event('input', { bubbles: true }));
     }, value);
     await slide(30);
-    await until(page, () => !document.getElementById('certified')!.textContent!.includes('Exact'), null);
+    await until(page, () => !document.getElementById('certified')!.textContent!.includes('Exact'));
     await rested(page);
     assert.ok(await counted(page, '#fact-vertices') < 20000);
     await slide(100);
-    await until(page, () => document.getElementById('certified')!.textContent === 'Exact', null);
+    await until(page, () => document.getElementById('certified')!.textContent === 'Exact');
     assert.equal(await counted(page, '#fact-vertices'), 257 * 257);
   });
 }));
@@ -77,11 +77,11 @@ test('what answers questions comes with the first of them, once, and again where
     await complete(page);
     assert.equal(fetched, 0, 'nothing is asked yet');
     await page.mouse.click(640, 380);
-    await until(page, () => /questions\.wasm/.test(document.getElementById('toast')!.textContent!), null);
+    await until(page, () => /questions\.wasm/.test(document.getElementById('toast')!.textContent!));
     assert.ok(await page.isHidden('#trouble'), 'the terrain stays as it is');
     for (const x of [640, 600]) {
       await page.mouse.click(x, 380);
-      await until(page, () => document.getElementById('answer')!.dataset.height !== undefined, null);
+      await until(page, () => document.getElementById('answer')!.dataset.height !== undefined);
       await page.keyboard.press('Escape');
       await page.evaluate(() => { delete document.getElementById('answer')!.dataset.height; });
     }

@@ -10,7 +10,7 @@ import { file } from '../support';
 import { appears, colours, complete, counted, fast, layOut, onPage, rested, site, slow, store, text, until, wide } from './browser';
 
 test('the page shows the terrain while it arrives, and then rests', () => onPage(slow.url, async (page) => {
-  await until(page, () => /\d/.test(document.querySelector('#fact-vertices')!.textContent!), null);
+  await until(page, () => /\d/.test(document.querySelector('#fact-vertices')!.textContent!));
   const counts = [await counted(page, '#fact-vertices')];
   const share = await page.getAttribute('#progress', 'aria-valuenow');
   assert.ok(Number(share) < 100, 'it is shown before it is whole');

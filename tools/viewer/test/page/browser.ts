@@ -75,7 +75,9 @@ export interface OnPage {
  * Does something on a page at an address; there is nothing of which the browser complained. Pages on a `quick` screen are one page,
  * with one document after the other: a process that has begun, and compiled the page's code.
  */
-export async function onPage(address: string, use: (page: Page) => Promise<void>, { screen = quick, mayComplain = false }: OnPage = {}): Promise<void> {
+export async function onPage(
+  address: string, use: (page: Page) => Promise<void>, { screen = quick, mayComplain = false }: OnPage = {},
+): Promise<void> {
   const page = screen === quick ? kept ??= await newPage(quick) : await newPage(screen);
   faults = [];
   try {
@@ -95,16 +97,16 @@ async function newPage(screen: BrowserContextOptions): Promise<Page> {
 }
 
 /** Waits until something holds on the page. A poll at each frame would keep the page at work. */
-export async function until<A>(page: Page, holds: (argument: A) => boolean, argument: A, timeout = 60000): Promise<void> {
-  await page.waitForFunction(holds as (argument: unknown) => boolean, argument, { polling: 100, timeout });
+export async function until(page: Page, holds: () => boolean): Promise<void> {
+  await page.waitForFunction(holds, null, { polling: 100, timeout: 60000 });
 }
 
 export async function complete(page: Page): Promise<void> {
-  await until(page, () => document.querySelector('#progress')!.classList.contains('done'), null);
+  await until(page, () => document.querySelector('#progress')!.classList.contains('done'));
   await rested(page);
 }
 
-/** Waits until the picture is drawn and nothing more is asked for: that comes 150 ms after the camera rests. Returns the number of pictures. */
+/** Waits until the picture is drawn and nothing more is asked for, 150 ms after the camera rests. Returns the number of pictures. */
 export async function rested(page: Page): Promise<number> {
   return page.evaluate(async () => {
     const { relief } = window.ptinViewer;
@@ -133,7 +135,8 @@ export async function colours(page: Page): Promise<number> {
 
 export const text = (page: Page, selector: string): Promise<string> => page.locator(selector).innerText();
 /** The whole number that a part of the page tells. */
-export const counted = async (page: Page, selector: string): Promise<number> => Number((await text(page, selector)).replace(/[^0-9]/g, ''));
+export const counted = async (page: Page, selector: string): Promise<number> =>
+  Number((await text(page, selector)).replace(/[^0-9]/g, ''));
 export const appears = (page: Page, selector: string): Promise<unknown> => page.waitForSelector(`${selector}:not([hidden])`);
 /** The numbers of the answer as they came. */
 export const told = (page: Page): Promise<Record<string, string>> =>
@@ -154,7 +157,7 @@ export async function askAlong(page: Page, key: 'p' | 's', a: Pixel, b: Pixel, b
   await between?.();
   await page.mouse.click(...b);
   if (key === 'p') await page.waitForSelector('#plot .surface');
-  else await until(page, () => /Visible|Hidden/.test(document.getElementById('answer-text')!.textContent!), null);
+  else await until(page, () => /Visible|Hidden/.test(document.getElementById('answer-text')!.textContent!));
 }
 
 /** The profile that is shown, as the page saves it: its head and its rows, without a number where there is no height. */
@@ -186,10 +189,20 @@ export function compareRows(rows: number[][], wanted: number[][], slack: number)
   });
 }
 
-/** A service of terrains, and its address. */
-export async function serving(terrains: string[], port = 0): Promise<{ service: ChildProcess; address: string }> {
-  const service = spawn(program, ['serve', ...terrains, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'ignore'] });
-  const address = await new Promise<string>((resolve, reject) => {
+/** Does something with a service of a terrain, given its address, which is over then. */
+export async function served(
+  named: string, use: (address: string, service: ChildProcess) => Promise<void>, port = 0,
+): Promise<void> {
+  const service = spawn(program, ['serve', named, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    await use(await addressOf(service), service);
+  } finally {
+    await ended(service);
+  }
+}
+
+function addressOf(service: ChildProcess): Promise<string> {
+  return new Promise((resolve, reject) => {
     let said = '';
     service.on('error', reject);
     service.stdout!.on('data', (bytes: Buffer) => {
@@ -198,23 +211,12 @@ export async function serving(terrains: string[], port = 0): Promise<{ service: 
       if (found !== null) resolve(found[0]);
     });
   });
-  return { service, address };
 }
 
 /** Ends a service, and waits for its end. */
 export async function ended(service: ChildProcess): Promise<void> {
-  if (service.exitCode !== null) return;
+  if (service.exitCode !== null || service.signalCode !== null) return;
   const over = new Promise((resolve) => { service.on('exit', resolve); });
   service.kill();
   await over;
-}
-
-/** Does something with a service of one terrain, given its address. */
-export async function served(named: string, use: (address: string) => Promise<void>): Promise<void> {
-  const { service, address } = await serving([named]);
-  try {
-    await use(address);
-  } finally {
-    await ended(service);
-  }
 }

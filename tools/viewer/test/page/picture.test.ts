@@ -125,6 +125,6 @@ test('keys tilt, leave no ring, and the pointer costs nothing while it moves', (
       document.getElementById('relief')!.dispatchEvent(new PointerEvent('pointermove', move));
     }
   });
-  await until(page, () => document.getElementById('place')!.textContent !== '', null);
+  await until(page, () => document.getElementById('place')!.textContent !== '');
   assert.equal(await page.evaluate(() => (window as unknown as { picks: number }).picks), 1);
 }));

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { hill, made, ptin } from '../support';
 import {
-  appears, askAlong, colours, compareRows, complete, ended, onPage, programRows, savedCsv, served, serving, store, text, told,
+  appears, askAlong, colours, compareRows, complete, ended, onPage, programRows, savedCsv, served, store, text, told,
 } from './browser';
 
 test('opens a terrain of a service from the page that lists them', () => served(`hills=${store}`, (address) => onPage(address, async (page) => {
@@ -104,24 +104,19 @@ function worstInSight({ frame: f, positions: p, corners, seen: e }: Drawn): { sa
   return { samples, worst };
 }
 
-test('after a service was away the page goes on by itself', async () => {
-  const first = await serving([`hills=${store}`]);
-  const port = Number(new URL(first.address).port);
-  await onPage(`${first.address}viewer/index.html?collection=hills`, async (page) => {
+test('after a service was away the page goes on by itself', () => served(`hills=${store}`, async (address, service) => {
+  await onPage(`${address}viewer/index.html?collection=hills`, async (page) => {
     await complete(page);
-    await ended(first.service);
+    await ended(service);
     await page.mouse.move(640, 380);
     for (let i = 0; i < 6; ++i) await page.mouse.wheel(0, -240);
     await appears(page, '#trouble');
     assert.match(await text(page, '#certified-what'), /does not answer/);
-    const again = await serving([`hills=${store}`], port);
-    try {
+    await served(`hills=${store}`, async () => {
       await page.waitForSelector('#trouble[hidden]', { state: 'attached', timeout: 30000 });
       await complete(page);
       await page.mouse.click(640, 380);
       await appears(page, '#answer');
-    } finally {
-      await ended(again.service);
-    }
+    }, Number(new URL(address).port));
   }, { mayComplain: true });
-});
+}));
