@@ -2,7 +2,7 @@
 //
 // What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Decoder, type Facts, onMap } from '../src/decoder';
@@ -25,15 +25,15 @@ export function ptin(...parts: string[]): string {
   return execFileSync(program, parts, { encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['ignore', 'pipe', 'ignore'] });
 }
 
-/** The path of a terrain, built once, and that of its stream. */
+/** A terrain of tests/data, and its stream. */
 export function terrain(name: string, ...options: string[]): { store: string; stream: string } {
   return built(join(data, `${name}.tif`), name, [], options);
 }
 
-/** A store of an input, and its stream. */
+/** The store of an input, built once, and its stream. */
 function built(input: string, name: string, forBuild: string[], forStream: string[]): { store: string; stream: string } {
   const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
-  ptin('build', input, ...forBuild, '-q', '-o', store, '--overwrite');
+  if (!existsSync(store)) ptin('build', input, ...forBuild, '-q', '-o', store);
   ptin('stream', store, ...forStream, '-o', stream, '--overwrite');
   return { store, stream };
 }
