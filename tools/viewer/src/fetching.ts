@@ -14,12 +14,9 @@ export class Problem extends Error {
   }
 }
 
-/** fetch(), whose failures say what they may mean. A cancelled request stays an AbortError. */
-export async function opened(address: string, init: RequestInit): Promise<Response> {
-  try {
-    return await fetch(address, init);
-  } catch (error) {
-    if ((error as Error).name === 'AbortError') throw error;
+/** What a host answers. Throws the Problem of a host that cannot be reached, or of an answer that is none. */
+export async function opened(address: string, init: RequestInit = {}): Promise<Response> {
+  const response = await fetch(address, init).catch(() => {
     const other = new URL(address, self.location.href).origin !== self.location.origin;
     throw new Problem(
       'The terrain cannot be reached',
@@ -27,7 +24,9 @@ export async function opened(address: string, init: RequestInit): Promise<Respon
         ? `${new URL(address, self.location.href).host} did not answer, or does not let pages of other hosts read it ` +
           '(its answers need the header Access-Control-Allow-Origin).'
         : 'The connection to the host broke, or there is none.');
-  }
+  });
+  await checkAnswer(response);
+  return response;
 }
 
 /** A module of the viewer, which lies beside the page. */
@@ -40,8 +39,7 @@ export async function moduleAt(folder: string, name: string): Promise<WebAssembl
   return WebAssembly.compile(await fetched.arrayBuffer());
 }
 
-/** Throws the Problem of an answer that is none. */
-export async function checkAnswer(response: Response): Promise<void> {
+async function checkAnswer(response: Response): Promise<void> {
   if (response.ok) return;
   const { status } = response;
   const type = response.headers.get('Content-Type') ?? '';

@@ -5,7 +5,7 @@
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import type { Certified, CertifiedPart } from './certified';
 import { Decoder } from './decoder';
-import { Problem, checkAnswer } from './fetching';
+import { Problem } from './fetching';
 import { rounded } from './format';
 import type { Frame } from './frame';
 import { type Window, holds, widened } from './map_window';
@@ -231,7 +231,6 @@ export class ServedView implements TerrainView {
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
     const { response, fingerprint, cost } = await this.service.stream(wanted, mostBytes, to.have, to.fingerprint);
-    await checkAnswer(response);
     if (response.body === null) throw new Problem('The service answered nothing', 'The connection to it broke.');
     to.fingerprint = fingerprint;
     this.cost = cost;

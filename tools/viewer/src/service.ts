@@ -3,7 +3,7 @@
 // The endpoints of `ptin serve` that the viewer asks. Nothing else of it knows their addresses or answers.
 import { count, number } from './format';
 import type { Frame } from './frame';
-import { Problem, checkAnswer, opened } from './fetching';
+import { Problem, opened } from './fetching';
 import type { Window } from './map_window';
 import type { MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
 import type { Answer, Certainty, Question, QuestionOf, Wanted } from './messages';
@@ -47,7 +47,6 @@ export class Service {
 
   async collection(): Promise<Collection> {
     const response = await opened(this.base, { headers: { Accept: 'application/json' } });
-    await checkAnswer(response);
     const json = await response.json().catch(() => {
       throw new Problem('This is no terrain service', `What answered at ${this.base} is not JSON.`);
     }) as Json;
@@ -120,11 +119,9 @@ export class Service {
     return { ...question, viewshed: { picture: await response.blob(), window: window as unknown as Window } };
   }
 
-  private async answered(question: string, format: string, query: Json): Promise<Response> {
+  private answered(question: string, format: string, query: Json): Promise<Response> {
     const parameters = Object.entries({ ...query, crs: 'native', f: format }).map(([k, v]): [string, string] => [k, String(v)]);
-    const response = await opened(`${this.base}/${question}?${new URLSearchParams(parameters)}`, {});
-    await checkAnswer(response);
-    return response;
+    return opened(`${this.base}/${question}?${new URLSearchParams(parameters)}`);
   }
 
   private async asked(question: string, query: Json): Promise<{ json: Json; cost: string }> {

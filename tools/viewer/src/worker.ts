@@ -8,7 +8,7 @@ import { earthOf, toldBy } from './earth';
 import { Problem, moduleAt } from './fetching';
 import { FileView } from './file_view';
 import { Frame } from './frame';
-import type { FromWorker, Question, Source, Status, ToWorker, Wanted } from './messages';
+import type { FromWorker, Question, Source, Status, ToWorker } from './messages';
 import { DecodeError } from './module';
 import { Service } from './service';
 import { ServedView } from './served_view';
@@ -37,7 +37,7 @@ function tell(error: unknown): void {
 
 /** The terrain that is open, and what the page has of it. */
 class Session {
-  private readonly view: TerrainView;
+  readonly view: TerrainView;
   private frame: Frame | null = null;
   /** The certificates of the mesh that was handed over last. */
   private drawnCertified: Certified = { parts: [], otherwise: { error: Infinity, deviation: Infinity } };
@@ -52,9 +52,6 @@ class Session {
     });
     this.view.run().catch(tell);
   }
-
-  setLimit(error: number): void { this.view.setLimit(error); }
-  setView(wanted: Wanted[]): void { this.view.setView(wanted); }
 
   sendEdges(wanted: boolean): void {
     this.edgesWanted = wanted;
@@ -147,8 +144,8 @@ self.onmessage = (event: MessageEvent<ToWorker>): void => {
     return;
   }
   session?.then((s) => {
-    if (message.kind === 'limit') s.setLimit(message.error);
-    if (message.kind === 'view') s.setView(message.wanted);
+    if (message.kind === 'limit') s.view.setLimit(message.error);
+    if (message.kind === 'view') s.view.setView(message.wanted);
     if (message.kind === 'edges') s.sendEdges(message.wanted);
     if (message.kind === 'ask') void s.ask(message.ticket, message.question);
   }).catch(() => undefined);
