@@ -171,6 +171,7 @@ test('what is drawn has upward normals, every edge once, and no void triangle', 
   const decoder = decoded(decoderModule(), readFileSync(terrain('coast_257', '--error', '5').stream));
   const { mesh, facts } = decoder;
   const told = toldBy(decoder.metadata);
+  decoder.describe(told.ground);
   const drawn = drawnMesh(mesh, new Frame(facts, told.units, earthOf(decoder, told)));
   const surface = mesh.classes.reduce((n, c) => n + (c === 0 ? 1 : 0), 0);
   assert.equal(drawn.corners.length, 3 * surface);
