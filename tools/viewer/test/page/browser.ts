@@ -44,7 +44,7 @@ before(async () => {
   store = mountains.store;
   layOut(site, '--stream', mountains.stream);
   fast = await host(site);
-  slow = await host(site, { bytesPerSecond: 60000 });
+  slow = await host(site, { bytesPerSecond: 25000 });
   browser = await launched();
 });
 after(async () => {
