@@ -1,70 +1,37 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How late cheap questions of `ptin serve` are beside dear ones, hostile bodies and idle connections.
+"""How late cheap questions of `ptin serve` are beside dear ones, hostile bodies, idle connections and attacks.
 
-usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--only NAME ...]
+usage: bench/admission.py PTIN FILE [--threads N] [--seconds S] [--attacks] [--connections N] [--only NAME ...]
 
 Starts the service on FILE over loopback for each row. Other clients come from 127.0.0.2 and on, as the client that is measured
 comes from 127.0.0.1, and from another process: 40 heights a second, each by a new connection, its time counted from when it was due, and /healthz eight
 times a second. A row has statuses, percentiles in milliseconds, and memory without the file's pages: at the start, at most, and
 two seconds after the others have their last answers. A row whose others were not answered what they are there for tests nothing:
-the status is 1 then.
+the status is 1 then. With --attacks the others are slow, greedy and broken clients (support/attacks.py), N of them (1000 at most)
+from the address of the client that is measured, and the service gives its file away too (--files).
 """
 import argparse
 import collections
+import http.client
 import json
 import multiprocessing
-import re
-import resource
-import signal
+import shutil
 import socket
 import subprocess
 import sys
 import threading
 import time
 
-
-class Service:
-    def __init__(self, ptin, file, threads, descriptors=None):
-        def fewer():
-            if descriptors:
-                resource.setrlimit(resource.RLIMIT_NOFILE, (descriptors, descriptors))
-        self.process = subprocess.Popen([ptin, "serve", f"dem={file}", "--listen", "127.0.0.1:0", "--threads", str(threads)],
-                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, preexec_fn=fewer)
-        self.port = int(re.search(r"http://[0-9.]+:(\d+)", self.process.stdout.readline()).group(1))
-
-    def connect(self, client):
-        made = socket.socket()
-        made.settimeout(60)
-        made.bind((f"127.0.0.{client + 1}", 0))
-        made.connect(("127.0.0.1", self.port))
-        return made
-
-    def ask(self, target, client=0, body=None):
-        with self.connect(client) as made:
-            head = f"{'GET' if body is None else 'POST'} {target} HTTP/1.1\r\nHost: a\r\nConnection: close\r\n"
-            if body is not None:
-                head += f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n"
-            made.sendall(head.encode() + b"\r\n" + (body or b""))
-            first = b""
-            while data := made.recv(1 << 18):
-                first = first or data
-            return int(first.split(b" ")[1]) if first else 0
-
-    def memory(self):
-        with open(f"/proc/{self.process.pid}/status") as lines:
-            kib = dict(re.findall(r"(RssAnon|RssShmem):\s+(\d+) kB", lines.read()))
-        return sum(map(int, kib.values())) / 1024
-
-    def end(self):
-        self.process.send_signal(signal.SIGTERM)
-        self.process.wait()
+from support.attacks import ATTACKS
+from support.markdown import print_head, print_row
+from support.service import Service
 
 
 def guarded(act):
     try:
         return act()
-    except OSError as error:
+    except (OSError, http.client.HTTPException) as error:
         return type(error).__name__
 
 
@@ -72,7 +39,7 @@ def repeat(service, stop, counts, k, target, body):
     """Asks from one of 50 addresses; no two questions are alike, which would be answered from memory."""
     i = 0
     while not stop.is_set():
-        counts[guarded(lambda: service.ask(target.replace("@", f"{k:02}{i:06}"), 1 + k % 50, body))] += 1
+        counts[guarded(lambda: service.ask(target.replace("@", f"{k:02}{i:06}"), body, 1 + k % 50)[0])] += 1
         i += 1
 
 
@@ -110,11 +77,18 @@ def rows(shed):
              ("300 descriptors, 600 idle", idle(600), {"connections"}, set())])
 
 
+def attack_rows(seconds, connections):
+    def start_of(attack):
+        return lambda service, stop, counts: threading.Thread(target=attack, args=(service, seconds, connections)).start()
+    return [(name, start_of(attack), set(), set()) for name, attack in ATTACKS.items()
+            if shutil.which("slowhttptest") or not name.startswith("slowhttptest")]
+
+
 def answered_viewshed(service, middle):
     """The widest one that the service answers."""
     for radius in (20000, 10000, 5000, 2000, 1000):
         shed = SHED.format(middle, radius)
-        if service.ask(shed.replace("@", "0")) == 200:
+        if service.ask(shed.replace("@", "0"))[0] == 200:
             return radius, shed
     sys.exit("no viewshed of this terrain is answered")
 
@@ -139,7 +113,7 @@ def measure(service, place, seconds, start):
     found = {"heights": [], "healthz": []}
 
     def one(kind, target, due):
-        status = guarded(lambda: service.ask(target))
+        status = guarded(lambda: service.ask(target)[0])
         found[kind].append((1e3 * (time.monotonic() - due), status))
 
     begin, asked = time.monotonic(), []
@@ -168,7 +142,7 @@ def table_row(name, found, counts, memory):
         cells.append(" / ".join(f"{times[min(len(times) - 1, int(len(times) * q))]:.0f}" for q in (0.5, 0.99, 1)))
     cells.append(" ".join(f"{n} x {s}" for s, n in sorted(counts.items(), key=str)))
     cells.append(" / ".join(f"{m:.0f}" for m in memory))
-    return "| " + " | ".join(cells) + " |"
+    return cells
 
 
 def main():
@@ -177,6 +151,8 @@ def main():
     parser.add_argument("file")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--seconds", type=int, default=5)
+    parser.add_argument("--attacks", action="store_true")
+    parser.add_argument("--connections", type=int, default=900)
     parser.add_argument("--only", nargs="*")
     options = parser.parse_args()
     facts = json.loads(subprocess.run([options.ptin, "info", options.file, "--json"], capture_output=True, check=True).stdout)
@@ -184,20 +160,25 @@ def main():
         facts["bounds"][k] for k in ("min_x", "min_y", "max_x", "max_y")]
     middle = f"POINT({(west + east) / 2}%20{(south + north) / 2})&crs=native"
     place = f"/collections/dem/position?coords={middle}"
-    service = Service(options.ptin, options.file, options.threads)
-    radius, shed = answered_viewshed(service, middle)
-    service.end()
-    print(f"Viewsheds have a radius of {radius}.\n")
-    print("| beside | heights | 50 % / 99 % / most, ms | healthz | 50 % / 99 % / most, ms | what the others got | "
-          "MiB before / most / after |\n|---|---|---|---|---|---|---|")
+    if options.attacks:
+        chosen = attack_rows(min(options.seconds, 60), min(options.connections, 1000))
+    else:
+        service = Service(options.ptin, options.file, threads=options.threads)
+        radius, shed = answered_viewshed(service, middle)
+        service.end()
+        chosen = rows(shed)
+        print(f"Viewsheds have a radius of {radius}.\n")
+    print_head("beside", "heights", "50 % / 99 % / most, ms", "healthz", "50 % / 99 % / most, ms", "what the others got",
+               "MiB before / most / after")
     failed = []
-    for name, start, needed, allowed in rows(shed):
+    for name, start, needed, allowed in chosen:
         if options.only and name not in options.only:
             continue
-        service = Service(options.ptin, options.file, options.threads, 300 if "descriptors" in name else None)
+        service = Service(options.ptin, options.file, *(["--files"] if options.attacks else []), threads=options.threads,
+                          descriptors=300 if "descriptors" in name else None)
         service.ask(place)
         found, counts, memory = measure(service, place, options.seconds, start)
-        print(table_row(name, found, counts, memory), flush=True)
+        print_row(*table_row(name, found, counts, memory))
         if not needed <= set(counts) <= needed | allowed:
             failed.append(name)
         service.end()

@@ -14,6 +14,7 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
+#include "bench/support/counters.h"
 #include "bench/support/scratch.h"
 #include "engine/construct/build.h"
 
@@ -43,12 +44,11 @@ void BM_Build(benchmark::State& state, const std::string& file, CostModel cost, 
     report = build({raster}, folder.file("out.ptin"), options, resources);
     seconds += report.seconds;
   }
-  const auto rate = benchmark::Counter::kIsIterationInvariantRate;
   state.counters["vertices"] = double(report.vertices);
   state.counters["t0"] = double(report.t0_vertices);
   state.counters["rank"] = double(report.max_rank);
-  state.counters["vertices/s"] = benchmark::Counter(double(report.vertices), rate);
-  state.counters["samples/s"] = benchmark::Counter(double(report.source_samples), rate);
+  add_rate(state, "vertices/s", report.vertices);
+  add_rate(state, "samples/s", report.source_samples);
   state.counters["seconds_wall"] = seconds / double(state.iterations());
   state.counters["bytes_per_vertex"] =
       double(report.file_bytes) / double(report.records + report.t0_vertices);

@@ -23,6 +23,8 @@ import json
 import math
 import statistics
 
+from support.markdown import print_head, print_row, print_table
+
 COLLAPSE, JOIN, TIGHTEN, CLOSE, PLACE = range(5)
 NAMES = ["collapse", "join", "tighten", "close", "place"]
 LATENCY = 0.002  # from a rank's answer to its next task, beyond the schedule: both sides look at least every two milliseconds
@@ -262,24 +264,22 @@ def scale(measured, disk):
         moved = sum(tasks.bytes.values()) - again
         reading, publish, folder = model.reading * samples, model.publish * samples, moved / (disk * 1e6)
         one = sum(tasks.seconds.values())
-        facts.append(f"| 10^{power} | {leaf} | {len(tasks.seconds)} | {hours(reading)} | {hours(one)} | {hours(publish)} | "
-                     f"{hours(critical_path(tasks))} | {hours(sum(tasks.schedule.values()))} | {moved / 1e12:.2f} TB, {hours(folder)} | "
-                     f"{again / 1e12:.2f} TB | {max(tasks.memory.values()) / 2 ** 30:.1f} GiB | "
-                     f"{len(tasks.seconds) * RESULT_BYTES / 2 ** 20:.0f} MiB |")
-        row = f"| 10^{power} | {leaf} |"
+        facts.append([f"10^{power}", leaf, len(tasks.seconds), hours(reading), hours(one), hours(publish), hours(critical_path(tasks)),
+                      hours(sum(tasks.schedule.values())), f"{moved / 1e12:.2f} TB, {hours(folder)}", f"{again / 1e12:.2f} TB",
+                      f"{max(tasks.memory.values()) / 2 ** 30:.1f} GiB", f"{len(tasks.seconds) * RESULT_BYTES / 2 ** 20:.0f} MiB"])
+        row = [f"10^{power}", leaf]
         for workers in (16, 64, 256, 1024):
             seconds, _, _ = simulate(tasks, workers)
             bands = math.ceil(samples / BAND_SAMPLES)
             whole = reading * math.ceil(bands / workers) / bands + max(seconds, folder) + publish
             slow = " (folder)" if folder > seconds else ""
-            row += f" {hours(whole)}, {(reading + one + publish) / whole:.0f}{slow} |"
+            row.append(f"{hours(whole)}, {(reading + one + publish) / whole:.0f}{slow}")
         times.append(row)
-    print("| samples | tile | tasks | reading, one after the other | tasks, one after the other | publishing, rank 0 | longest path of joins and closings | "
-          "in the schedule, rank 0 | moved through the folder | segments read again | memory of the largest task | results at rank 0 |")
-    print("|---" * 12 + "|")
-    print("\n".join(facts))
-    print("\n| samples | tile | 16 workers: all, speed-up | 64 | 256 | 1024 |\n|---|---|---|---|---|---|")
-    print("\n".join(times))
+    print_table(("samples", "tile", "tasks", "reading, one after the other", "tasks, one after the other", "publishing, rank 0",
+                 "longest path of joins and closings", "in the schedule, rank 0", "moved through the folder", "segments read again",
+                 "memory of the largest task", "results at rank 0"), facts)
+    print()
+    print_table(("samples", "tile", "16 workers: all, speed-up", "64", "256", "1024"), times)
 
 
 def main():
@@ -295,21 +295,21 @@ def main():
         scale(measured, arguments.disk)
         return
     shared = read(arguments.shared) if arguments.shared else None
-    print("| kind | tasks | seconds | in the schedule | MB |\n|---|---|---|---|---|")
+    print_head("kind", "tasks", "seconds", "in the schedule", "MB")
     for kind in range(5):
         keys = measured.of_kind(kind)
-        print(f"| {NAMES[kind]} | {len(keys)} | {sum(measured.seconds[k] for k in keys):.2f} | "
-              f"{sum(measured.schedule[k] for k in keys):.3f} | {sum(measured.bytes[k] for k in keys) / 1e6:.1f} |")
+        print_row(NAMES[kind], len(keys), f"{sum(measured.seconds[k] for k in keys):.2f}",
+                  f"{sum(measured.schedule[k] for k in keys):.3f}", f"{sum(measured.bytes[k] for k in keys) / 1e6:.1f}")
     alone = sum(measured.stages[s] for s in ("reading", "opening", "publishing"))
     print(f"\nreading {measured.stages['reading']:.2f} s, opening {measured.stages['opening']:.2f} s, "
           f"publishing {measured.stages['publishing']:.2f} s, critical path {critical_path(measured):.2f} s; "
           f"processor in the schedule {measured.scheduling:.2f} s of {measured.processor:.2f} s, "
           f"{100 * measured.scheduling / measured.processor:.2f} %\n")
-    print("| workers | tasks' time | all | workers at work |\n|---|---|---|---|")
+    print_head("workers", "tasks' time", "all", "workers at work")
     for workers in arguments.workers or [1, 2, 4]:
         tasks = shared if shared and workers > 1 else measured
         seconds, busy, _ = simulate(tasks, workers)
-        print(f"| {workers} | {seconds:.2f} s | {seconds + alone:.2f} s | {100 * busy / seconds / workers:.0f} % |")
+        print_row(workers, f"{seconds:.2f} s", f"{seconds + alone:.2f} s", f"{100 * busy / seconds / workers:.0f} %")
 
 
 if __name__ == "__main__":

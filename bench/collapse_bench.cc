@@ -21,6 +21,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "bench/support/counters.h"
 #include "bench/support/scratch.h"
 #include "bench/support/terrain.h"
 #include "engine/construct/collapse/simplify.h"
@@ -85,8 +86,7 @@ void BM_Simplify(benchmark::State& state, const std::string& name, CostModel cos
   }
   state.counters["vertices"] = double(t->started.tile.tin.vertices.size());
   state.counters["left"] = double(t->started.tile.tin.vertices.size() - collapsed);
-  state.counters["vertices/s"] =
-      benchmark::Counter(double(collapsed), benchmark::Counter::kIsIterationInvariantRate);
+  add_rate(state, "vertices/s", collapsed);
 }
 
 /// Collapses vertices in a seeded order into their first allowed neighbour, until half of them are
@@ -127,8 +127,7 @@ void BM_CollapseAndSplit(benchmark::State& state, const std::string& name) {
     tin.reset();
     state.ResumeTiming();
   }
-  state.counters["steps/s"] =
-      benchmark::Counter(double(steps), benchmark::Counter::kIsIterationInvariantRate);
+  add_rate(state, "steps/s", steps);
 }
 
 [[maybe_unused]] const bool registered = [] {

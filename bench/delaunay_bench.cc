@@ -10,12 +10,11 @@
 #include <string>
 
 #include <benchmark/benchmark.h>
-#include <cpl_vsi.h>
 
 #include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/points/point_source.h"
 #include "engine/construct/tasks/task_driver.h"
-#include "tests/construct/delaunay_tin.h"
+#include "tests/construct/memory_file.h"
 #include "tests/support/las_file.h"
 #include "tests/support/test_folder.h"
 
@@ -66,12 +65,8 @@ const PointBuckets& buckets_of(Kind kind, std::uint64_t n) {
   static int last_kind = -1;
   static std::uint64_t last_n = 0;
   if (!buckets || last_kind != kind || last_n != n) {
-    const std::string bytes = las_of(kind, n);
-    VSILFILE* file = VSIFOpenL("/vsimem/bench.las", "wb");
-    VSIFWriteL(bytes.data(), 1, bytes.size(), file);
-    VSIFCloseL(file);
-    buckets = std::make_unique<PointBuckets>(sorted("/vsimem/bench.las", 64U << 20));
-    VSIUnlink("/vsimem/bench.las");
+    const MemoryFile file("bench.las", las_of(kind, n));
+    buckets = std::make_unique<PointBuckets>(sorted(file.path(), 64U << 20));
     last_kind = kind;
     last_n = n;
   }
@@ -105,16 +100,12 @@ BENCHMARK(Tiles)
 
 /// From a LAS file in memory to buckets on disk.
 void Buckets(benchmark::State& state) {
-  const std::string bytes = las_of(kEven, static_cast<std::uint64_t>(state.range(0)));
-  VSILFILE* file = VSIFOpenL("/vsimem/bench.las", "wb");
-  VSIFWriteL(bytes.data(), 1, bytes.size(), file);
-  VSIFCloseL(file);
+  const MemoryFile file("bench.las", las_of(kEven, static_cast<std::uint64_t>(state.range(0))));
   for (auto _ : state) {
     const PointBuckets buckets =
-        sorted("/vsimem/bench.las", static_cast<std::uint64_t>(state.range(1)) << 20);
+        sorted(file.path(), static_cast<std::uint64_t>(state.range(1)) << 20);
     benchmark::DoNotOptimize(buckets.size());
   }
-  VSIUnlink("/vsimem/bench.las");
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(Buckets)

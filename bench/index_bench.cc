@@ -16,65 +16,48 @@
 // libspatialindex keeps its nodes in an LRU buffer of its own and takes a lock; boxes of its nodes
 // are doubles of four dimensions. Cannot show: cold nodes (ptin bench), several threads, trees higher
 // than two or three levels.
-#include <cmath>
-#include <functional>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
+#include "bench/support/opened_store.h"
 #include "engine/query/select/predicate.h"
 #include "storage/index_writer.h"
 #include "storage/short_float.h"
 #include "storage/spatialindex_rtree.h"
-#include "storage/store_file.h"
 
 namespace {
 
 using namespace ptin;
 using namespace ptin::bench;
 
-/// The store, its pages' attributes and both indexes; made on first use. Null when there is no
-/// store.
+/// The attributes of the pages of store(), and the second index over them; made on first use.
 struct Indexed {
-  std::shared_ptr<const StoreFile> store;
   std::vector<StoreFile::PageInfo> pages;
   ScratchFolder folder;
   std::unique_ptr<SpatialIndexRTree> rival;
+
+  Indexed() {
+    for (std::uint64_t i = 0; i < store()->pages().page_count(); ++i) {
+      pages.push_back(store()->page_info(PageId{i}));
+    }
+    rival = SpatialIndexRTree::open(store(), {.base = folder.file("search")});
+  }
 };
 
-Indexed* indexed() {
-  static const std::unique_ptr<Indexed> it = []() -> std::unique_ptr<Indexed> {
-    if (bench_store().empty()) return nullptr;
-    auto made = std::make_unique<Indexed>();
-    made->store = StoreFile::open(bench_store());
-    for (std::uint64_t i = 0; i < made->store->pages().page_count(); ++i) {
-      made->pages.push_back(made->store->page_info(PageId{i}));
-    }
-    made->rival = SpatialIndexRTree::open(made->store, {.base = made->folder.file("search")});
-    return made;
-  }();
-  return it.get();
+const Indexed& indexed() {
+  static const Indexed it;
+  return it;
 }
 
-/// Seeded predicates of one kind.
-std::vector<PredicatePtr> predicates(const std::string& query, const StoreFacts& facts) {
-  std::mt19937_64 random(1);
+/// 64 seeded predicates of one kind.
+std::vector<PredicatePtr> predicates(const std::string& query) {
+  const double area_ppm = query == "window_ppm:1000" ? 1000 : query == "point" ? 0 : 40000;
   std::vector<PredicatePtr> result;
-  const double width = double(facts.bounds.max_x) - facts.bounds.min_x;
-  const double height = double(facts.bounds.max_y) - facts.bounds.min_y;
-  const double share = query == "window_ppm:1000" ? std::sqrt(0.001) : query == "point" ? 0 : 0.2;
-  for (int i = 0; i < 64; ++i) {
-    const auto place = [&](double low, double span) {
-      return low + std::uniform_real_distribution<double>(0, span * (1 - share))(random);
-    };
-    const double x = place(facts.bounds.min_x, width), y = place(facts.bounds.min_y, height);
-    const MapPoint low = facts.map.to_map(x, y);
-    const MapPoint high = facts.map.to_map(x + width * share, y + height * share);
-    const PredicatePtr window = meets_region(Window{low.x, low.y, high.x, high.y}, facts.map);
+  for (const Window& place : random_windows(facts(), 64, area_ppm, 1)) {
+    const PredicatePtr window = meets_region(place, facts().map);
     result.push_back(query == "error_5" ? error_above(5)
                      : query == "both"  ? all_of({window, error_above(5)})
                                         : window);
@@ -97,14 +80,13 @@ class BruteForce final : public RecordIndex {
 };
 
 void BM_Search(benchmark::State& state, const std::string& index, const std::string& query) {
-  const Indexed* it = indexed();
-  if (it == nullptr)
-    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
-  const BruteForce brute(it->pages);
-  const RecordIndex& searched = index == "packed"        ? it->store->index()
+  if (skipped(state)) return;
+  const Indexed& it = indexed();
+  const BruteForce brute(it.pages);
+  const RecordIndex& searched = index == "packed"        ? store()->index()
                                 : index == "brute_force" ? static_cast<const RecordIndex&>(brute)
-                                                         : *it->rival;
-  const std::vector<PredicatePtr> asked = predicates(query, it->store->facts());
+                                                         : *it.rival;
+  const std::vector<PredicatePtr> asked = predicates(query);
   std::size_t found = 0;
   IoCounters counters;
   std::vector<PageId> pages;
@@ -117,13 +99,10 @@ void BM_Search(benchmark::State& state, const std::string& index, const std::str
       found += pages.size();
     }
   }
-  const auto searches = double(asked.size());
-  state.counters["pages"] = double(found) / searches;
-  state.counters["nodes"] = double(counters.index_nodes) / searches;
-  state.counters["searches/s"] =
-      benchmark::Counter(searches, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["pages/s"] =
-      benchmark::Counter(double(found), benchmark::Counter::kIsIterationInvariantRate);
+  add_mean(state, "pages", found, asked.size());
+  add_mean(state, "nodes", counters.index_nodes, asked.size());
+  add_rate(state, "searches/s", asked.size());
+  add_rate(state, "pages/s", found);
 }
 
 /// What an index entry says of a page.
@@ -147,26 +126,24 @@ layout::NodeEntry entry_of(const StoreFile::PageInfo& p, const HeightEncoding& h
 }
 
 void BM_Load(benchmark::State& state, const std::string& index) {
-  Indexed* it = indexed();
-  if (it == nullptr)
-    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
-  const HeightEncoding heights = it->store->facts().heights;
+  if (skipped(state)) return;
+  const Indexed& it = indexed();
+  const HeightEncoding heights = facts().heights;
   static int built = 0;  // of all repetitions: what is there is opened, not built
   for (auto _ : state) {
     if (index == "packed") {
-      IndexWriter writer(FileLayer::system(), it->folder.file(""), "load", heights);
-      for (const StoreFile::PageInfo& p : it->pages) writer.add(entry_of(p, heights));
-      ScratchFile out(FileLayer::system(), it->folder.file(""), "load_out", true);
+      IndexWriter writer(FileLayer::system(), it.folder.file(""), "load", heights);
+      for (const StoreFile::PageInfo& p : it.pages) writer.add(entry_of(p, heights));
+      ScratchFile out(FileLayer::system(), it.folder.file(""), "load_out", true);
       benchmark::DoNotOptimize(writer.write_to(out, 0));
     } else {
       const auto tree = SpatialIndexRTree::open(
-          it->store, {.base = it->folder.file("load" + std::to_string(built++))});
+          store(), {.base = it.folder.file("load" + std::to_string(built++))});
       benchmark::DoNotOptimize(tree->was_built());
     }
   }
-  state.counters["pages"] = double(it->pages.size());
-  state.counters["pages/s"] =
-      benchmark::Counter(double(it->pages.size()), benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["pages"] = double(it.pages.size());
+  add_rate(state, "pages/s", it.pages.size());
 }
 
 [[maybe_unused]] const bool registered = [] {

@@ -14,34 +14,22 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
+#include "bench/support/opened_store.h"
 #include "engine/query/isoline/isoline.h"
 #include "engine/query/isoline/isoline_progressive.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/retrieval.h"
 #include "engine/query/select/total_order.h"
-#include "engine/query/terrain.h"
 
 namespace {
 
 using namespace ptin;
-
-const Terrain* terrain() {
-  static const std::string path = bench::bench_store();
-  if (path.empty()) return nullptr;
-  static const Terrain opened = Terrain::open(path);
-  return &opened;
-}
-
-bool skipped(benchmark::State& state) {
-  if (terrain() != nullptr) return false;
-  state.SkipWithError("no store: set PTIN_BENCH_STORE");
-  return true;
-}
+using namespace ptin::bench;
 
 /// Evenly between the lowest and the highest height.
 std::vector<double> levels_between(int count) {
-  const StoreFacts& f = terrain()->store().facts();
+  const StoreFacts& f = facts();
   std::vector<double> levels;
   for (int i = 1; i <= count; ++i) {
     levels.push_back(f.min_height + (f.max_height - f.min_height) * i / (count + 1));
@@ -54,28 +42,22 @@ void extract(benchmark::State& state, int levels, AnswerBy by, int threads) {
   IsolineRequest request;
   request.levels = levels_between(levels);
   request.threads = threads;
-  request.by = by;
   request.counts_vertices = true;
   QueryCost cost;
   TraceCounts crossed;
   for (auto _ : state) {
-    const Isolines lines = isolines(*terrain(), request);
+    const Isolines lines = terrain()->isolines(request, by);
     cost = lines.cost;
     crossed = lines.crossed;
   }
-  const auto a_vertex = [&](std::uint64_t count) {
-    return static_cast<double>(count) /
-           static_cast<double>(std::max<std::uint64_t>(crossed.vertices, 1));
-  };
+  const std::uint64_t vertices = std::max<std::uint64_t>(crossed.vertices, 1);
   if (by == AnswerBy::kStars) {
-    state.counters["stars/vertex"] = a_vertex(cost.stars_read);
+    add_mean(state, "stars/vertex", cost.stars_read, vertices);
   } else {
-    state.counters["records/vertex"] = a_vertex(cost.records_retrieved);
+    add_mean(state, "records/vertex", cost.records_retrieved, vertices);
   }
-  const auto segments = static_cast<double>(crossed.segments);
-  state.counters["segments"] = segments;
-  state.counters["segments/s"] =
-      benchmark::Counter(segments, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["segments"] = static_cast<double>(crossed.segments);
+  add_rate(state, "segments/s", crossed.segments);
 }
 
 void IsolineOne(benchmark::State& state) {
@@ -95,17 +77,16 @@ BENCHMARK(IsolineBySplits)->Arg(1)->Arg(20)->Unit(benchmark::kMillisecond)->UseR
 
 void ProgressiveSplit(benchmark::State& state) {
   if (skipped(state)) return;
-  const StoreFacts& facts = terrain()->store().facts();
-  const LevelSet levels(levels_between(1), facts.heights);
-  QueryContext context({.memory_bytes = ~0ULL}, terrain()->store().path());
+  const LevelSet levels(levels_between(1), facts().heights);
+  QueryContext context({.memory_bytes = ~0ULL}, store()->path());
   std::vector<PendingSplit> splits =
-      retrieve({terrain()->store(), terrain()->index()}, *levels.crossing(), 0, context);
+      retrieve({*store(), store()->index()}, *levels.crossing(), 0, context);
   std::sort(splits.begin(), splits.end(), is_before);
   IsolineChange all;
   for (auto _ : state) {
     state.PauseTiming();
     Refinement mesh(terrain()->t0());
-    ProgressiveIsolines kept(mesh.tin(), levels, facts.heights, facts.map);
+    ProgressiveIsolines kept(mesh.tin(), levels, facts().heights, facts().map);
     all = {};
     state.ResumeTiming();
     for (const PendingSplit& split : splits) {
@@ -113,10 +94,8 @@ void ProgressiveSplit(benchmark::State& state) {
       all.triangles += kept.advance(mesh.tin()).triangles;
     }
   }
-  const auto count = static_cast<double>(splits.size());
-  state.counters["splits/s"] =
-      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["triangles/split"] = static_cast<double>(all.triangles) / count;
+  add_rate(state, "splits/s", splits.size());
+  add_mean(state, "triangles/split", all.triangles, splits.size());
 }
 BENCHMARK(ProgressiveSplit)->Unit(benchmark::kMillisecond);
 

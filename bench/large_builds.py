@@ -20,6 +20,8 @@ import subprocess
 import sys
 import time
 
+from support.markdown import print_head, print_row
+
 
 def blocks(folder, skip):
     total = 0
@@ -91,7 +93,7 @@ def run(ptin, folder, source, memory, threads, options):
         f"{seconds:.0f} s", f"{processor:.0f} s", f"{vertices / processor / 1e3:.0f} k",
     ]
     os.remove(output)
-    return "| " + " | ".join(map(str, row)) + " |"
+    return row
 
 
 def main():
@@ -108,13 +110,13 @@ def main():
     parser.add_argument("--threads", action="append", type=int)
     a = parser.parse_args(arguments)
     os.makedirs(a.folder, exist_ok=True)
-    print("| input | vertices | --memory | threads | anonymous | output | temporary disk / output | system calls' traffic "
-          "/ (input + output) | disk's traffic / (input + output) | clock | processor | vertices/s of processor |")
-    print("|" + "---|" * 12, flush=True)
+    print_head("input", "vertices", "--memory", "threads", "anonymous", "output", "temporary disk / output",
+               "system calls' traffic / (input + output)", "disk's traffic / (input + output)", "clock", "processor",
+               "vertices/s of processor")
     for source in a.inputs:
         for memory in a.memory or ["256M"]:
             for threads in a.threads or [1]:
-                print(run(a.ptin, a.folder, source, memory, threads, options), flush=True)
+                print_row(*run(a.ptin, a.folder, source, memory, threads, options))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@
 //
 // Points are uniform over the domain, and seeded. What this cannot show: a cold disk (ptin bench),
 // points that lie as people's do, in clusters.
-#include <random>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -20,22 +19,11 @@
 namespace {
 
 using namespace ptin;
-using bench::skipped;
-using bench::terrain;
-
-std::vector<MapPoint> random_points(std::size_t count) {
-  const StoreFacts& f = terrain()->store().facts();
-  std::mt19937_64 random(1997);
-  std::uniform_real_distribution<double> x(f.bounds.min_x, f.bounds.max_x);
-  std::uniform_real_distribution<double> y(f.bounds.min_y, f.bounds.max_y);
-  std::vector<MapPoint> points(count);
-  for (MapPoint& p : points) p = f.map.to_map(x(random), y(random));
-  return points;
-}
+using namespace ptin::bench;
 
 void locate_one(benchmark::State& state, const LocateRequest& request) {
   if (skipped(state)) return;
-  const std::vector<MapPoint> points = random_points(1000);
+  const std::vector<MapPoint> points = random_points(facts(), 1000);
   QueryCost cost;
   std::size_t i = 0;
   std::size_t asked = 0;
@@ -47,13 +35,10 @@ void locate_one(benchmark::State& state, const LocateRequest& request) {
     ++asked;
     cost.add_counts(result.cost);
   }
-  const auto each = [&](std::uint64_t n) {
-    return static_cast<double>(n) / static_cast<double>(asked);
-  };
-  state.counters["records"] = each(cost.records_examined);
-  state.counters["stars"] = each(cost.stars_read);
-  state.counters["pages"] = each(cost.io.pages);
-  state.counters["nodes"] = each(cost.io.index_nodes);
+  add_mean(state, "records", cost.records_examined, asked);
+  add_mean(state, "stars", cost.stars_read, asked);
+  add_mean(state, "pages", cost.io.pages, asked);
+  add_mean(state, "nodes", cost.io.index_nodes, asked);
 }
 
 void LocateOne(benchmark::State& state) { locate_one(state, {}); }
@@ -68,17 +53,16 @@ BENCHMARK(LocateOneAtError)->Unit(benchmark::kMicrosecond);
 
 void LocateBatch(benchmark::State& state) {
   if (skipped(state)) return;
-  const std::vector<MapPoint> points = random_points(static_cast<std::size_t>(state.range(0)));
+  const std::vector<MapPoint> points =
+      random_points(facts(), static_cast<std::size_t>(state.range(0)));
   std::uint64_t applied = 0;
   for (auto _ : state) {
     const LocateResult result = locate(*terrain(), points);
     benchmark::DoNotOptimize(result.points.data());
     applied = result.cost.records_applied;
   }
-  state.counters["points/s"] = benchmark::Counter(static_cast<double>(points.size()),
-                                                  benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["records/point"] =
-      static_cast<double>(applied) / static_cast<double>(points.size());
+  add_rate(state, "points/s", points.size());
+  add_mean(state, "records/point", applied, points.size());
 }
 BENCHMARK(LocateBatch)->Arg(1000)->Arg(1000000)->Unit(benchmark::kMillisecond);
 

@@ -8,49 +8,34 @@
 //                                     cost
 //   BM_Eye/tau_ppm:t                  a view moved by a thousandth of the terrain's width
 // Cannot show: cold pages; caches that do not hold the window's pages.
-#include <cmath>
 #include <memory>
 
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/moving_window.h"
-#include "engine/query/terrain.h"
 
 namespace {
 
 using namespace ptin;
-using bench::skipped;
-using bench::store;
-
-/// A window of `area_ppm` millionths of the area, `shift` of its width to the east of the third.
-Region window_at(std::int64_t area_ppm, double shift) {
-  const StoreFacts& f = store()->facts();
-  const double share = std::sqrt(static_cast<double>(area_ppm) / 1e6);
-  const double width = f.bounds.max_x - f.bounds.min_x;
-  const double height = f.bounds.max_y - f.bounds.min_y;
-  const double x = f.bounds.min_x + width * (1 - share) / 3 + shift * width * share;
-  const double y = f.bounds.min_y + height * (1 - share) / 3;
-  const MapPoint low = f.map.to_map(x, y);
-  const MapPoint high = f.map.to_map(x + width * share, y + height * share);
-  return Window{low.x, low.y, high.x, high.y};
-}
+using namespace ptin::bench;
 
 void BM_Fresh(benchmark::State& state) {
   if (skipped(state)) return;
-  const Terrain tin(store());
   RefineRequest request;
-  request.region = window_at(state.range(0), 0.0);
+  request.region = window_at(facts(), static_cast<double>(state.range(0)));
   std::uint64_t splits = 0;
   for (auto _ : state) {
-    splits = tin.refine(request).cost.records_applied;
+    splits = terrain()->refine(request).cost.records_applied;
   }
   state.counters["splits"] = static_cast<double>(splits);
 }
 
 void BM_FirstMove(benchmark::State& state) {
   if (skipped(state)) return;
-  const PredicatePtr p = meets_region(window_at(state.range(0), 0.0), store()->facts().map);
+  const PredicatePtr p =
+      meets_region(window_at(facts(), static_cast<double>(state.range(0))), facts().map);
   std::uint64_t splits = 0;
   for (auto _ : state) {
     MovingWindow window{OpenedTerrain(store())};
@@ -73,24 +58,24 @@ void move_among(benchmark::State& state, const std::vector<PredicatePtr>& places
     changed += moved.entered + moved.left;
     examined += moved.cost.records_examined;
   }
-  state.counters["changed"] = static_cast<double>(changed) / static_cast<double>(moves);
-  state.counters["examined"] = static_cast<double>(examined) / static_cast<double>(moves);
+  add_mean(state, "changed", changed, moves);
+  add_mean(state, "examined", examined, moves);
 }
 
 void BM_Move(benchmark::State& state) {
   if (skipped(state)) return;
   std::vector<PredicatePtr> places;
   for (int i = 0; i < 16; ++i) {
+    const double shift = i * static_cast<double>(state.range(1)) / 1e6;
     places.push_back(
-        meets_region(window_at(state.range(0), i * static_cast<double>(state.range(1)) / 1e6),
-                     store()->facts().map));
+        meets_region(window_at(facts(), static_cast<double>(state.range(0)), shift), facts().map));
   }
   move_among(state, places);
 }
 
 void BM_Eye(benchmark::State& state) {
   if (skipped(state)) return;
-  const StoreFacts& f = store()->facts();
+  const StoreFacts& f = facts();
   std::vector<PredicatePtr> places;
   for (int i = 0; i < 16; ++i) {
     View view;

@@ -15,8 +15,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "bench/support/scratch.h"
-#include "engine/query/terrain.h"
+#include "bench/support/opened_store.h"
 
 namespace {
 
@@ -47,14 +46,13 @@ void ask(const Terrain& tin, int i, Sums& sums) {
 }
 
 void report(benchmark::State& state, const Sums& sums) {
-  state.counters["records"] = sums.records / sums.calls;
-  state.counters["pages"] = sums.pages / sums.calls;
+  add_mean(state, "records", sums.records, sums.calls);
+  add_mean(state, "pages", sums.pages, sums.calls);
   state.counters["worst_us"] = sums.worst_us;
 }
 
 void BM_Open(benchmark::State& state, PageAccess access) {
-  if (bench_store().empty())
-    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
+  if (skipped(state)) return;
   for (auto _ : state) {
     const Terrain tin = Terrain::open(bench_store(), access);
     benchmark::DoNotOptimize(tin.store().record_count());
@@ -63,8 +61,7 @@ void BM_Open(benchmark::State& state, PageAccess access) {
 
 /// A point each time; `stays_open` decides what is timed.
 void BM_Points(benchmark::State& state, PageAccess access, bool stays_open) {
-  if (bench_store().empty())
-    return state.SkipWithError("needs PTIN_BENCH_STORE or the terrains of PTIN_SHARED_DATA");
+  if (skipped(state)) return;
   const Terrain kept = Terrain::open(bench_store(), access);
   Sums sums;
   int next = 0;

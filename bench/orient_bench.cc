@@ -14,6 +14,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <benchmark/benchmark.h>
 
+#include "bench/support/counters.h"
 #include "engine/geometry/orient.h"
 
 namespace {
@@ -56,8 +57,7 @@ void BM_Orient(benchmark::State& state, Kind kind) {
     for (const Triple& t : points) left += orient(t.a, t.b, t.c) > 0 ? 1 : 0;
     benchmark::DoNotOptimize(left);
   }
-  state.counters["orientations/s"] =
-      benchmark::Counter(double(points.size()), benchmark::Counter::kIsIterationInvariantRate);
+  bench::add_rate(state, "orientations/s", points.size());
 }
 
 void BM_OrientRival(benchmark::State& state, Kind kind) {
@@ -72,8 +72,7 @@ void BM_OrientRival(benchmark::State& state, Kind kind) {
     }
     benchmark::DoNotOptimize(left);
   }
-  state.counters["orientations/s"] =
-      benchmark::Counter(double(points.size()) / 3, benchmark::Counter::kIsIterationInvariantRate);
+  bench::add_rate(state, "orientations/s", points.size() / 3);
 }
 
 [[maybe_unused]] const bool registered = [] {

@@ -38,7 +38,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace {
 
@@ -210,7 +210,9 @@ void check_against_store(const MadeTerrain& terrain, const Counted& counted) {
   BuildReport report;
   std::filesystem::create_directory(folder.file("work"));
   StoreOutput output(path, {}, false, terrain.frame, FileLayer::system(), folder.file("work"));
-  add_segment(output, records);
+  const PreparedSegment segment = output.packer().prepare(records);
+  output.packer().place(segment.pages, output.page_bytes());
+  output.add(segment);
   output.publish(tile.tin, deaths_of(tile), {"random"}, report);
   const Terrain tin = Terrain::open(path);
   int differences = 0;

@@ -9,18 +9,17 @@
 // Each begins with a round that does not count: the first touch of new memory, which on a virtual
 // machine the host may have to find first.
 // Cannot show: cold pages (ptin bench); several queries at once.
-#include <cmath>
 #include <memory>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "bench/support/opened_store.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/retrieval.h"
-#include "engine/query/terrain.h"
 
 namespace {
 
@@ -28,21 +27,12 @@ using namespace ptin;
 using namespace ptin::bench;
 
 Region window_of(const benchmark::State& state) {
-  const StoreFacts& f = store()->facts();
-  const double share = std::sqrt(static_cast<double>(state.range(0)) / 1e6);
-  const double width = f.bounds.max_x - f.bounds.min_x;
-  const double height = f.bounds.max_y - f.bounds.min_y;
-  const double x = f.bounds.min_x + width * (1 - share) / 3;
-  const double y = f.bounds.min_y + height * (1 - share) / 3;
-  const MapPoint low = f.map.to_map(x, y);
-  const MapPoint high = f.map.to_map(x + width * share, y + height * share);
-  return Window{low.x, low.y, high.x, high.y};
+  return window_at(facts(), static_cast<double>(state.range(0)));
 }
 
 void report(benchmark::State& state, std::uint64_t splits) {
   state.counters["splits"] = static_cast<double>(splits);
-  state.counters["splits/s"] = benchmark::Counter(static_cast<double>(splits),
-                                                  benchmark::Counter::kIsIterationInvariantRate);
+  add_rate(state, "splits/s", splits);
 }
 
 void BM_RefineWindow(benchmark::State& state) {

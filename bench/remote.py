@@ -23,6 +23,9 @@ import tempfile
 import time
 import urllib.request
 
+from support.markdown import print_table
+from support.service import Service
+
 SERVER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests", "support", "range_server.py")
 
 
@@ -105,9 +108,7 @@ class Bench:
 
     def second_points(self, count, bounds):
         """A point beside one that was asked for before, of one opened file: by the service."""
-        service = subprocess.Popen([self.ptin, "serve", "t=" + self.url, "--listen", "127.0.0.1:0"],
-                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        address = service.stdout.readline().split(" ")[0]
+        service = Service(self.ptin, self.url, threads=os.cpu_count())
         asked = []
         for _ in range(count):
             x = random.uniform(bounds["min_x"], bounds["max_x"])
@@ -116,7 +117,7 @@ class Bench:
             for dx in (0.0, step):
                 self.counts()
                 begin = time.monotonic()
-                url = f"{address}collections/t/position?coords=POINT({x + dx!r}%20{y!r})"
+                url = f"http://{service.address}/collections/dem/position?coords=POINT({x + dx!r}%20{y!r})&crs=native"
                 with urllib.request.urlopen(url) as answer:
                     told = re.search(r"remote_rounds=(\d+)", answer.headers.get("Server-Timing", ""))
                 seconds = time.monotonic() - begin
@@ -124,8 +125,7 @@ class Bench:
                 if dx:
                     asked.append({"rounds": int(told[1]) if told else 0, "requests": counted["requests"], "bytes": counted["bytes"],
                                   "most": counted["most"], "seconds": seconds, "used": 0, "singly": 0, "requests_singly": 0})
-        service.terminate()
-        service.wait()
+        service.end()
         return asked
 
 
@@ -156,10 +156,8 @@ def main():
         bench.add("a picture of the whole within 50",
                   [bench.ask("render", "--error", "50", "-o", os.path.join(folder, "p.png"), "--overwrite")])
         bench.close()
-    print("| question | rounds, median | most | requests | KiB | KiB used | time | one after the other: requests, time |")
-    print("|---|---:|---:|---:|---:|---:|---:|---:|")
-    for row in bench.rows:
-        print("| " + " | ".join(row) + " |")
+    print_table(("question", "rounds, median", "most", "requests", "KiB", "KiB used", "time",
+                 "one after the other: requests, time"), bench.rows)
     for breach in bench.breaches:
         print(breach, file=sys.stderr)
     sys.exit(1 if arguments.check and bench.breaches else 0)

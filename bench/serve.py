@@ -14,62 +14,35 @@ memory       RSS less what is of the file itself (RssFile), every 2 s over --req
 hang-up      long questions whose client leaves; until the service computes nothing, by /metrics
 """
 import argparse
-import http.client
 import json
 import os
 import random
 import re
-import signal
-import socket
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
 
+from support.markdown import print_head, print_row
+from support.service import Service
+
 CORES = sorted(os.sched_getaffinity(0))
 
 
-class Service:
-    def __init__(self, ptin, file, threads, *options):
-        self.process = subprocess.Popen(
-            [ptin, "serve", f"dem={file}", "--listen", "127.0.0.1:0", "--threads", str(threads), *options],
-            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        os.sched_setaffinity(self.process.pid, CORES[:threads])
-        self.address = re.search(r"http://([0-9.:]+)", self.process.stdout.readline()).group(1)
+def limit_memory(service, size):
+    """In a control group of its own, of version 1 or 2."""
+    old = os.path.isdir("/sys/fs/cgroup/memory")
+    group = ("/sys/fs/cgroup/memory" if old else "/sys/fs/cgroup") + "/ptin_bench_serve"
+    os.makedirs(group, exist_ok=True)
+    for name, value in [("memory.limit_in_bytes" if old else "memory.max", size), ("cgroup.procs", service.process.pid)]:
+        with open(os.path.join(group, name), "w") as file:
+            file.write(str(value))
 
-    def limit_memory(self, size):
-        """In a control group of its own, of version 1 or 2."""
-        old = os.path.isdir("/sys/fs/cgroup/memory")
-        group = ("/sys/fs/cgroup/memory" if old else "/sys/fs/cgroup") + "/ptin_bench_serve"
-        os.makedirs(group, exist_ok=True)
-        for name, value in [("memory.limit_in_bytes" if old else "memory.max", size), ("cgroup.procs", self.process.pid)]:
-            with open(os.path.join(group, name), "w") as file:
-                file.write(str(value))
 
-    def major_faults(self):
-        with open(f"/proc/{self.process.pid}/stat") as file:
-            return int(file.read().rsplit(") ", 1)[1].split()[9])
-
-    def ask(self, target, body=None):
-        connection = http.client.HTTPConnection(self.address, timeout=60)
-        headers = {"Content-Type": "application/json"} if body else {}
-        connection.request("POST" if body else "GET", target, body, headers)
-        answer = connection.getresponse()
-        return answer.status, answer.read()
-
-    def metric(self, name):
-        found = re.search(rf"^{name} (\S+)$", self.ask("/metrics")[1].decode(), re.M)
-        return float(found.group(1))
-
-    def memory(self):
-        with open(f"/proc/{self.process.pid}/status") as lines:
-            kib = dict(re.findall(r"(Rss\w+|VmRSS):\s+(\d+) kB", lines.read()))
-        return (int(kib["VmRSS"]) - int(kib["RssFile"])) / 1024
-
-    def end(self):
-        self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(30)
+def major_faults(service):
+    with open(f"/proc/{service.process.pid}/stat") as file:
+        return int(file.read().rsplit(") ", 1)[1].split()[9])
 
 
 class Places:
@@ -136,14 +109,10 @@ def throughput(service, targets, seconds):
     return float(re.search(r"Requests/sec:\s+([0-9.]+)", out).group(1))
 
 
-def row(what, *cells):
-    print("| " + " | ".join([what, *[str(c) for c in cells]]) + " |", flush=True)
-
-
 def open_loop(arguments, service, what, targets):
     rate = throughput(service, targets, arguments.seconds)
     ms = load(arguments, service, targets, rate / 2, arguments.seconds, 64)["ms"]
-    row(what, f"{rate:.0f}/s", f"{ms['50']:.2f}", f"{ms['99']:.2f}", f"{ms['100']:.2f}")
+    print_row(what, f"{rate:.0f}/s", f"{ms['50']:.2f}", f"{ms['99']:.2f}", f"{ms['100']:.2f}")
 
 
 def batch(service, what, target, body, count):
@@ -155,7 +124,7 @@ def batch(service, what, target, body, count):
         if status != 200:
             sys.exit(answer.decode())
     best, median = min(times), statistics.median(times)
-    row(what, f"{count / median:.0f}/s", f"{1e3 * best:.1f} (best)", f"{1e3 * median:.1f} (median)", "")
+    print_row(what, f"{count / median:.0f}/s", f"{1e3 * best:.1f} (best)", f"{1e3 * median:.1f} (median)", "")
 
 
 def batches(arguments, service, places, lon_lat):
@@ -187,7 +156,7 @@ def meshes(arguments, service, places, how, count):
 def tiles(arguments, service, how, count):
     status, text = service.ask("/collections/dem/tiles/layer.json")
     if status != 200:
-        row("tiles", text.decode()[:80], "", "", "")
+        print_row("tiles", text.decode()[:80], "", "", "")
         return
     layer = json.loads(text)
     chosen = random.Random(4)
@@ -215,7 +184,7 @@ def flatness(arguments, service, places):
     later = seen[len(seen) // 4:]
     print(f"\n{arguments.requests} mixed questions, {rate}/s: {running.stdout.read().strip()}")
     print(f"memory without the file's pages, MiB: {later[0]:.0f} after a quarter, {later[-1]:.0f} at the end, "
-          f"{max(seen):.0f} at most; {service.major_faults()} major faults")
+          f"{max(seen):.0f} at most; {major_faults(service)} major faults")
 
 
 def hang_ups(service, places):
@@ -223,8 +192,7 @@ def hang_ups(service, places):
     pairs = [[*places.point(), 2, *places.point(), 2] for _ in range(1000)]
     body = json.dumps({"pairs": pairs, "crs": "native"})
     for _ in range(10):
-        host, port = service.address.split(":")
-        client = socket.create_connection((host, int(port)))
+        client = service.connect()
         client.sendall(f"POST /collections/dem/sight HTTP/1.1\r\nHost: x\r\nContent-Type: application/json\r\n"
                        f"Content-Length: {len(body)}\r\n\r\n{body}".encode())
         deadline = time.time() + 5
@@ -253,11 +221,16 @@ def main():
     arguments = parser.parse_args()
     facts = json.loads(subprocess.run([arguments.ptin, "info", arguments.file, "--json"], capture_output=True, check=True).stdout)
     places = Places(facts["bounds"], 1)
-    service = Service(arguments.ptin, arguments.file, arguments.threads)
+
+    def started(*options):
+        threads = arguments.threads
+        return Service(arguments.ptin, arguments.file, *options, threads=threads, cores=CORES[:threads])
+
+    service = started()
     if arguments.limit_memory:
         with open(arguments.file, "rb") as file:  # out of the page cache, to be read again by the service
             os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
-        service.limit_memory(arguments.limit_memory)
+        limit_memory(service, arguments.limit_memory)
         flatness(arguments, service, places)
         print(f"ended with status {service.end()}")
         return
@@ -266,12 +239,11 @@ def main():
     if extent:
         w, s, e, n = extent[0]
         lon_lat = Places({"min_x": w, "min_y": s, "max_x": e, "max_y": n}, 2)
-    row("question", "throughput", "50 %, ms", "99 %, ms", "worst, ms")
-    row("---", "---", "---", "---", "---")
+    print_head("question", "throughput", "50 %, ms", "99 %, ms", "worst, ms")
     batches(arguments, service, places, lon_lat)
     meshes(arguments, service, places, "from the cache", 8)
     tiles(arguments, service, "from the cache", 32)
-    bare = Service(arguments.ptin, arguments.file, arguments.threads, "--limit", "cache_bytes=1")
+    bare = started("--limit", "cache_bytes=1")
     open_loop(arguments, bare, "one exact height", [position(places) for _ in range(20000)])
     meshes(arguments, bare, places, "made", 500)
     tiles(arguments, bare, "made", 3000)

@@ -10,7 +10,6 @@
 //
 // Pairs are uniform over the domain, and seeded. Distances are plane in map units, so in a
 // geographic CRS the Earth's curvature plays no part here.
-#include <random>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -21,18 +20,12 @@
 namespace {
 
 using namespace ptin;
-using bench::skipped;
-using bench::terrain;
+using namespace ptin::bench;
 
 std::vector<SightPair> random_pairs(std::size_t count) {
-  const StoreFacts& f = terrain()->store().facts();
-  std::mt19937_64 random(1997);
-  std::uniform_real_distribution<double> x(f.bounds.min_x, f.bounds.max_x);
-  std::uniform_real_distribution<double> y(f.bounds.min_y, f.bounds.max_y);
+  const std::vector<MapPoint> ends = random_points(facts(), 2 * count);
   std::vector<SightPair> pairs(count);
-  for (SightPair& p : pairs) {
-    p = {f.map.to_map(x(random), y(random)), 2.0, f.map.to_map(x(random), y(random)), 2.0};
-  }
+  for (std::size_t i = 0; i < count; ++i) pairs[i] = {ends[2 * i], 2.0, ends[2 * i + 1], 2.0};
   return pairs;
 }
 
@@ -53,12 +46,10 @@ void solve_pairs(benchmark::State& state, bool verdict_only) {
       cost.add_counts(r.cost);
     }
   }
-  const auto count = static_cast<double>(pairs.size());
-  state.counters["pairs/s"] =
-      benchmark::Counter(count, benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["hidden"] = static_cast<double>(hidden) / count;
-  state.counters["stars/pair"] = static_cast<double>(cost.stars_read) / count;
-  state.counters["pages/pair"] = static_cast<double>(cost.io.pages) / count;
+  add_rate(state, "pairs/s", pairs.size());
+  add_mean(state, "hidden", hidden, pairs.size());
+  add_mean(state, "stars/pair", cost.stars_read, pairs.size());
+  add_mean(state, "pages/pair", cost.io.pages, pairs.size());
 }
 
 void SightVerdict(benchmark::State& state) { solve_pairs(state, true); }
@@ -72,12 +63,11 @@ void single_pairs(benchmark::State& state, bool verdict_only, AnswerBy by) {
   const std::vector<SightPair> pairs = random_pairs(200);
   SightRequest request;
   request.verdict_only = verdict_only;
-  request.by = by;
   std::uint64_t used = 0;
   for (auto _ : state) {
     used = 0;
     for (const SightPair& pair : pairs) {
-      const QueryCost cost = sight(*terrain(), pair, request).cost;
+      const QueryCost cost = terrain()->sight(pair, request, by).cost;
       used += by == AnswerBy::kStars ? cost.stars_read : cost.records_applied;
     }
   }
@@ -87,10 +77,9 @@ void single_pairs(benchmark::State& state, bool verdict_only, AnswerBy by) {
     along.region = Segment{pair.a, pair.b};
     refined += terrain()->refine(along).cost.records_applied;
   }
-  state.counters["pairs/s"] = benchmark::Counter(static_cast<double>(pairs.size()),
-                                                 benchmark::Counter::kIsIterationInvariantRate);
-  state.counters["used/pair"] = static_cast<double>(used) / static_cast<double>(pairs.size());
-  state.counters["of_refining"] = static_cast<double>(used) / static_cast<double>(refined);
+  add_rate(state, "pairs/s", pairs.size());
+  add_mean(state, "used/pair", used, pairs.size());
+  add_mean(state, "of_refining", used, refined);
 }
 
 BENCHMARK_CAPTURE(single_pairs, SightSingleVerdict, true, AnswerBy::kStars)

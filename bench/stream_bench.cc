@@ -19,8 +19,7 @@
 namespace {
 
 using namespace ptin;
-using bench::skipped;
-using bench::store;
+using namespace ptin::bench;
 
 StreamSummary send(std::int64_t error, std::vector<std::byte>& bytes) {
   StreamRequest request;
@@ -35,11 +34,9 @@ StreamSummary send(std::int64_t error, std::vector<std::byte>& bytes) {
 }
 
 void report(benchmark::State& state, const StreamSummary& sent) {
-  const auto splits = static_cast<double>(sent.splits);
-  state.counters["splits"] = splits;
-  state.counters["bytes/split"] = static_cast<double>(sent.bytes) / splits;
-  state.counters["splits/s"] =
-      benchmark::Counter(splits, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["splits"] = static_cast<double>(sent.splits);
+  add_mean(state, "bytes/split", sent.bytes, sent.splits);
+  add_rate(state, "splits/s", sent.splits);
 }
 
 void BM_Send(benchmark::State& state) {

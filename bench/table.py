@@ -8,6 +8,8 @@ import csv
 import json
 import sys
 
+from support.markdown import print_table
+
 BUILT_IN = {"name", "run_name", "run_type", "repetitions", "repetition_index", "threads", "aggregate_name", "aggregate_unit",
             "iterations", "real_time", "cpu_time", "time_unit", "family_index", "per_family_instance_index", "label",
             "error_occurred", "error_message"}
@@ -17,11 +19,6 @@ def short(value):
     if not isinstance(value, (int, float)):
         return str(value)
     return f"{value:,.0f}".replace(",", " ") if abs(value) >= 1000 else f"{value:.4g}"
-
-
-def print_table(head, rows):
-    for line in (head, ["---"] * len(head), *rows):
-        print("| " + " | ".join(line) + " |")
 
 
 def print_json(path):
@@ -43,8 +40,8 @@ def print_json(path):
 
 def print_csv(path):
     with open(path, newline="") as file:
-        rows = list(csv.reader(file))
-    print_table(rows[0], rows[1:])
+        head, *rows = csv.reader(file)
+    print_table(head, rows)
 
 
 if len(sys.argv) != 2:

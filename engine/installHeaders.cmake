@@ -1,43 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# The public headers: what another program may include. Run at installation, this file copies them from SOURCE into
-# INCLUDE_FOLDER/ptin, those of MPI where it is there (WITH_MPI). All other headers are how a room works inside. `tests/layering` reads the list: tools and the test of
-# the installation include nothing else, and a public header includes public headers alone.
+# The public headers: what users of the library need. Run at installation, this file copies them from SOURCE into
+# INCLUDE_FOLDER/ptin, those of MPI where it is there (WITH_MPI). All other headers are how a room works inside. `tests/layering`
+# reads the lists: a public header includes public headers alone, the test of the installation includes nothing else, and tools
+# include public headers and those that the program needs besides.
 cmake_policy(VERSION 3.25)
 set(public_headers
-    engine/check.h
     engine/construct/build.h
     engine/construct/build_observer.h
     engine/construct/build_option_table.h
     engine/construct/build_options.h
     engine/construct/build_plan.h
     engine/construct/build_parts.h
-    engine/construct/build_worker.h
-    engine/construct/grid/decimal.h
     engine/construct/grid/left_out.h
     engine/construct/grid/source_disk.h
     engine/construct/grid/source_options.h
-    engine/construct/grid/source_point.h
     engine/construct/grid/source_warning.h
     engine/construct/tasks/stage_progress.h
     engine/construct/hierarchy/tile_bytes.h
     engine/construct/memory_plan.h
-    engine/construct/points/open_points.h
-    engine/construct/process_limits.h
-    engine/construct/read/column_names.h
-    engine/construct/read/declared_comments.h
     engine/construct/read/input_kind.h
-    engine/construct/read/layer_choice.h
-    engine/construct/read/line_file.h
-    engine/construct/read/point_stream.h
-    engine/construct/read/point_part.h
-    engine/construct/read/text_rows.h
-    engine/construct/read/text_table.h
-    engine/construct/raster/vrt_background.h
-    engine/construct/scratch/external_memory.h
-    engine/construct/scratch/external_sorter.h
     engine/construct/scratch/manifest.h
-    engine/construct/scratch/run_merger.h
     engine/construct/scratch/workspace.h
     engine/construct/collapse/cost.h
     engine/construct/tile/tile_tree.h
@@ -46,16 +29,13 @@ set(public_headers
     engine/crs/ground.h
     engine/crs/ground_facts.h
     engine/crs/height_unit.h
-    engine/crs/proj_messages.h
     engine/error.h
     engine/geometry/affine.h
     engine/geometry/box.h
     engine/geometry/convex_hull.h
     engine/geometry/height.h
-    engine/geometry/hilbert.h
     engine/geometry/infinity.h
     engine/geometry/interval.h
-    engine/geometry/key_table.h
     engine/geometry/orient.h
     engine/geometry/point.h
     engine/growing_array.h
@@ -65,7 +45,6 @@ set(public_headers
     engine/mesh/link.h
     engine/mesh/star.h
     engine/mesh/tin.h
-    engine/mesh/validate.h
     engine/mesh/vertex_table.h
     engine/prefetch.h
     engine/query/heights/class_changes.h
@@ -80,9 +59,15 @@ set(public_headers
     engine/query/isoline/isoline_progressive.h
     engine/query/isoline/levels.h
     engine/query/isoline/point_store.h
-    engine/query/living/grid_cell.h
+    engine/query/living/living_stars.h
     engine/query/living/living_triangle.h
     engine/query/living/tin_parts.h
+    engine/query/questions.h
+    engine/query/raster/pixel_centres.h
+    engine/query/raster/pixel_lattice.h
+    engine/query/raster/pixel_sampler.h
+    engine/query/raster/raster.h
+    engine/query/raster/surface_normal.h
     engine/query/received/received_mesh.h
     engine/query/refine/hierarchy_check.h
     engine/query/refine/moving_window.h
@@ -90,7 +75,6 @@ set(public_headers
     engine/query/refine/refine.h
     engine/query/refine/refinement.h
     engine/query/select/accounting.h
-    engine/query/select/answer_by.h
     engine/query/select/certificate.h
     engine/query/select/detail.h
     engine/query/select/opened_terrain.h
@@ -100,6 +84,9 @@ set(public_headers
     engine/query/select/region.h
     engine/query/select/retrieval.h
     engine/query/select/total_order.h
+    engine/query/shape/bins_along_y.h
+    engine/query/shape/grid_cell.h
+    engine/query/shape/spot.h
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h
@@ -118,26 +105,44 @@ set(public_headers
     storage/coarsest_tin.h
     storage/file/announcer.h
     storage/file/file_layer.h
-    storage/file/file_questions.h
     storage/file/io_counters.h
     storage/file/range_source.h
     storage/file/replaced_file.h
     storage/file/sigbus_guard.h
-    storage/file_beginning.h
     storage/index.h
-    storage/index_shape.h
     storage/layout.h
-    storage/living_stars.h
-    storage/packed_segment.h
-    storage/page_journal.h
     storage/page_store.h
     storage/record.h
-    storage/spatialindex_rtree.h
     storage/star.h
     storage/store_facts.h
     storage/store_file.h
-    storage/store_writer.h
     storage/verify.h)
+# What the program needs and users of the library do not: readers of texts and sorting in files, by which it reads points and
+# measures samples again, and what it shows of files and processes. They are not installed.
+set(program_headers
+    engine/check.h
+    engine/construct/grid/decimal.h
+    engine/construct/grid/source_point.h
+    engine/construct/points/open_points.h
+    engine/construct/process_limits.h
+    engine/construct/raster/vrt_background.h
+    engine/construct/read/column_names.h
+    engine/construct/read/declared_comments.h
+    engine/construct/read/layer_choice.h
+    engine/construct/read/line_file.h
+    engine/construct/read/point_stream.h
+    engine/construct/read/text_rows.h
+    engine/construct/read/text_table.h
+    engine/construct/scratch/external_memory.h
+    engine/construct/scratch/external_sorter.h
+    engine/crs/proj_messages.h
+    engine/geometry/hilbert.h
+    engine/query/shape/clip.h
+    engine/query/shape/tiler.h
+    storage/file/file_questions.h
+    storage/file_beginning.h
+    storage/index_shape.h
+    storage/spatialindex_rtree.h)
 if(WITH_MPI)
   list(APPEND public_headers
     engine/mpi/mpi_job.h)

@@ -31,7 +31,8 @@ template <class T>
   const auto [end, fault] = std::from_chars(number.data(), number.data() + number.size(), value);
   if constexpr (std::is_floating_point_v<T>) {
     if (fault == std::errc::result_out_of_range) {
-      // A wider type still tells which of both it is; where even that is too narrow, the exponent does.
+      // A wider type still shows which of both it is; where even that is too narrow, the exponent
+      // does.
       number = number.substr(0, static_cast<std::size_t>(end - number.data()));
       constexpr auto kTooLarge = std::numeric_limits<long double>::infinity();
       const bool is_tiny = number.find_first_of("eE") != std::string_view::npos &&

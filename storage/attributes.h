@@ -4,10 +4,8 @@
 // predicate.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "engine/geometry/box.h"
 #include "engine/geometry/interval.h"
@@ -32,7 +30,7 @@ inline constexpr Interval kAllHeights{-std::numeric_limits<double>::infinity(),
 /// The triangles of a star, or of those of a page or a subtree. A page's or a subtree's are the
 /// union, the largest error and the least death.
 struct StarAttributes {
-  GridBox box;         ///< Of the polygons, grid units, closed.
+  GridBox box;         ///< Box of the polygons, grid units, closed.
   Interval heights;    ///< Codes of the vertices that have one; empty when none has.
   double error = 0.0;  ///< All triangles live below it; may be +infinity.
   /// None dies below it; -infinity when one lives on.
@@ -49,41 +47,24 @@ class StarPredicate {
   StarPredicate& operator=(const StarPredicate&) = default;
   virtual ~StarPredicate() = default;
   [[nodiscard]] virtual bool may_hold(const StarAttributes& a) const noexcept = 0;
-  /// A box around a fixed set of points, where this test is true of a box that has one of them.
-  /// Where it is true of a box that is cut, it is true of one of the parts at least, each grown by
-  /// a unit. Other tests, and those of which nothing is known, have the box of everything.
+  /// A box around S, if this test means "the box meets a fixed set S"; else the box of everything.
+  /// Callers may then cut a box into pieces: if the test holds for the whole, it holds for at least
+  /// one piece grown by one unit.
   [[nodiscard]] virtual GridBox reach() const noexcept {
     return {INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   }
 };
 
-/// Those of ascending steps, ordered heights (storage/page_columns.h), that lie above `low` and not
-/// above `high`: with such heights at its corners a triangle has some below and some at or above each.
-[[nodiscard]] inline std::span<const std::uint64_t> steps_within(
-    std::span<const std::uint64_t> steps, std::uint64_t low, std::uint64_t high) noexcept {
-  const auto first = std::upper_bound(steps.begin(), steps.end(), low);
-  auto last = first;
-  while (last != steps.end() && *last <= high) {
-    ++last;
-  }
-  return {first, last};
-}
-
 /// What is asked of stars: a triangle that lives at a level, meets a box and has heights within an
-/// interval. Of the stars of a page all are found that have such a triangle, and some others.
+/// interval. All stars of a page that have such a triangle are found, and some others.
 struct StarFilter {
   GridBox box{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
   Interval heights = kAllHeights;  ///< Codes.
   double level = -1.0;             ///< An error; negative: the finest TIN.
   /// Ask for the stars of records of the level's own error too, whatever lives of them.
   bool with_ties = false;
-  /// Ascending ordered heights, borrowed: ask only for stars around a vertex with a height, with
-  /// steps_within() what the corners of their living triangles span. Empty: for all.
-  std::span<const std::uint64_t> steps;
   /// A further condition of pages and subtrees, borrowed; null: none.
   const StarPredicate* also = nullptr;
-  /// Ask `also` of stars too, where it looks at nothing but the box: with the roi of their record.
-  bool also_of_stars = false;
 };
 
 /// A monotone test: once true, it stays true when the arguments grow (engine/DESIGN.md, section
@@ -104,7 +85,7 @@ class AttributePredicate {
   /// True only when holds(r) is certain for every record r whose roi is not empty and lies in
   /// `all.roi`, whose heights lie in `all.heights` (or are empty), and whose error is at least
   /// `least_error`. False where that is not certain. Once false, it stays false while `all` grows
-  /// or `least_error` falls. Of a page for which it is true no record is asked, and a moving window
+  /// or `least_error` falls. No record is asked of a page for which it is true, and a moving window
   /// skips the pages on which its old and its new predicate agree (engine/query/refine).
   [[nodiscard]] virtual bool holds_for_all(const Attributes& all,
                                            double least_error) const noexcept {

@@ -23,7 +23,8 @@ template <class Lanes>
   return v;
 }
 
-/// True when any bit of `v` is set. Of the result of a comparison: true when it holds for any lane.
+/// True when any bit of `v` is set. For the result of a comparison: true when it holds for any
+/// lane.
 [[nodiscard]] inline bool any(Int4 v) noexcept {
   const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(v);
   return (halves[0] | halves[1]) != 0;

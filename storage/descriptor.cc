@@ -46,13 +46,13 @@ void Descriptor::add(const VertexSplit& r, std::span<const RingCorner> ring) noe
   error_min_ = std::min(error_min_, short_bits(r.error));
   deviation_max_ = std::max(deviation_max_, short_bits(r.deviation));
   star_box_ = united(star_box_, r.u);
-  if ((r.flags & VertexSplit::kVertexVoid) == 0) {
+  if (r.has_height()) {
     star_heights_ = united(star_heights_, encoding_.code(r.height));
   }
   const std::size_t triangles = ring.size() - (has_closed_ring(r) ? 0 : 1);
   for (std::size_t i = 0; i < ring.size(); ++i) {
     star_box_ = united(star_box_, ring[i].position);
-    if ((ring[i].flags & RingCorner::kNoHeight) == 0) {
+    if (ring[i].has_height()) {
       star_heights_ = united(star_heights_, encoding_.code(ring[i].height));
     }
     if (i < triangles) {

@@ -41,7 +41,7 @@ struct HeightInterval {
 [[nodiscard]] HeightInterval no_heights(HeightType type) noexcept;
 
 /// True when each field of the entry is possible: the boxes on the grid and not empty, that of the
-/// stars within that of the regions of influence, heights not NaN, errors and deviation neither NaN
+/// stars within that of the rois, heights not NaN, errors and deviation neither NaN
 /// nor negative, the least error not above the largest, `reserved` 0. `records` and `checksum` are
 /// not looked at.
 [[nodiscard]] bool is_sound(const layout::NodeEntry& e, const HeightEncoding& heights) noexcept;

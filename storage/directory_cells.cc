@@ -50,7 +50,7 @@ void cut(std::vector<std::uint32_t>& lines, std::uint32_t begin, std::uint32_t e
     return;
   }
   const std::uint32_t middle = begin + (end - begin) / 2;
-  GridBox around;  // Of the points: the domain may be empty for the most part.
+  GridBox around;  // A box of the points: the domain may be empty for the most part.
   for (const GridPoint p : points) {
     around = united(around, p);
   }

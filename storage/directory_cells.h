@@ -135,7 +135,7 @@ struct DirectoryScale {
   [[nodiscard]] constexpr ShortBits death_of(std::uint32_t byte) const noexcept {
     return byte == 0 ? ShortBits{0} : static_cast<ShortBits>(error_of(byte - 1) + 1);
   }
-  /// The last byte whose death is not above this one, before they are cut to infinity.
+  /// The largest byte whose death does not exceed this one, before bytes are cut to infinity.
   [[nodiscard]] constexpr std::uint8_t byte_of_death(ShortBits death) const noexcept {
     if (death == 0 || death - 1 < least || death == 1) {
       return death == 0 ? std::uint8_t{0} : std::uint8_t{1};

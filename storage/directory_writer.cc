@@ -15,7 +15,7 @@ namespace {
 /// What is looked at of all pages before there are cells.
 struct Overview {
   std::vector<GridPoint> points;               ///< Centres of the stars of every so manieth page.
-  ShortBits least = kShortInfinity, most = 0;  ///< Of the pages' largest errors but 0 and infinity.
+  ShortBits least = kShortInfinity, most = 0;  ///< Range of largest errors but 0 and infinity.
 };
 
 Overview look_over(std::uint64_t pages, const PageWalk& walk) {

@@ -17,7 +17,7 @@ namespace ptin {
 /// Memory: 2 MiB of points, kDirectoryRunBytes, 30 bytes a cell.
 class DirectoryWriter {
  public:
-  /// @param walk  Of the pages, several times; borrowed, as are their descriptors.
+  /// @param walk  Goes over the pages, several times; borrowed, as are their descriptors.
   /// None where it would be too long, whatever the cells.
   [[nodiscard]] static std::optional<DirectoryWriter> plan(const GridBox& bounds,
                                                            std::uint64_t pages,

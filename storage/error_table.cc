@@ -10,7 +10,7 @@ namespace ptin {
 namespace {
 
 constexpr std::uint32_t kBinStep =
-    1U << 20;  // a float has 23 mantissa bits; the upper three tell the bin
+    1U << 20;  // a float has 23 mantissa bits; the upper three give the bin
 
 }  // namespace
 
@@ -19,13 +19,21 @@ float error_bin_upper(float error) noexcept {
   return layout::to_float((bits + (kBinStep - 1)) & ~(kBinStep - 1));
 }
 
+std::uint64_t records_in(const std::vector<ErrorBin>& bins) noexcept {
+  std::uint64_t records = 0;
+  for (const ErrorBin& bin : bins) {
+    records += bin.records;
+  }
+  return records;
+}
+
 void ErrorTable::add(const VertexSplit& r) {
   const float upper = error_bin_upper(r.error);
   ErrorBin& bin = bins_[layout::to_bits(upper)];
   bin.upper = upper;
   bin.max_deviation = std::max(bin.max_deviation, r.deviation);
   ++bin.records;
-  bin.void_vertices += (r.flags & VertexSplit::kVertexVoid) != 0 ? 1 : 0;
+  bin.void_vertices += r.has_height() ? 0 : 1;
 }
 
 void ErrorTable::add(const ErrorBin& other) {

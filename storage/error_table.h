@@ -19,6 +19,9 @@ namespace ptin {
 /// REQUIRES: error >= 0.
 [[nodiscard]] float error_bin_upper(float error) noexcept;
 
+/// How many records some bins have.
+[[nodiscard]] std::uint64_t records_in(const std::vector<ErrorBin>& bins) noexcept;
+
 /// Counts records into bins. Memory: one bin for each that is not empty, at most 2041.
 class ErrorTable {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The kind of a file that is none of ours, as far as its first bytes tell.
+// The kind of a file that is none of ours, as far as its first bytes show.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace ptin {
 inline constexpr std::size_t kBeginningBytes = 64;
 
 /// "it begins like a TIFF, as GeoTIFFs do; `ptin build` makes a .ptin file of it", "it is empty": what
-/// stands behind the colon of "this is not a .ptin file: ". Never fails; an unknown beginning is told
-/// as one.
+/// stands behind the colon of "this is not a .ptin file: ". Never fails; an unknown beginning is
+/// named as one.
 /// @param first  The first bytes of the file, kBeginningBytes or all that it has.
 [[nodiscard]] std::string beginning_of(std::span<const std::byte> first);
 

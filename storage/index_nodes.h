@@ -29,7 +29,7 @@ class IndexNodes {
  public:
   struct Root {
     IndexShape shape;
-    std::uint64_t offset = 0;  ///< Of the root in the file.
+    std::uint64_t offset = 0;  ///< Place of the root in the file.
     std::uint64_t root_checksum = 0;
   };
 

@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little,
 /// As in PNG: the first byte has its high bit set, and CR LF and Ctrl-Z follow the name, so that a
 /// transfer as text is noticed at once.
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N', 0x0D, 0x0A, 0x1A};
-/// What a stream begins with (engine/query/stream/stream_format.h): no store, and told so.
+/// What a stream begins with (engine/query/stream/stream_format.h): no store, and refused as such.
 inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
                                                              0x0D, 0x0A, 0x1A, 0x0A};
 inline constexpr std::uint16_t kMajorVersion = 2;
@@ -79,7 +79,7 @@ enum class SectionKind : std::uint32_t {
 struct SectionEntry {
   std::uint32_t kind, reserved;
   std::uint64_t offset, bytes;
-  std::uint64_t checksum;  ///< Of the section; of the root node for kIndex; 0 for kPages.
+  std::uint64_t checksum;  ///< The section's; for kIndex that of the root node; 0 for kPages.
 };
 static_assert(sizeof(SectionEntry) == 32 && offsetof(SectionEntry, offset) == 8);
 
@@ -103,7 +103,7 @@ static_assert(sizeof(ErrorBinEntry) == 24);
 
 /// Describes a page (in a leaf) or a node (above).
 struct NodeEntry {
-  std::int32_t min_x, min_y, max_x, max_y;                      //  0  of the regions of influence
+  std::int32_t min_x, min_y, max_x, max_y;                      //  0  of the rois
   std::int32_t star_min_x, star_min_y, star_max_x, star_max_y;  // 16  of the stars
   std::uint32_t height_lo, height_hi;                           // 32  saturated, as HeightEncoding
   std::uint32_t star_height_lo, star_height_hi;                 // 40  of the stars' vertices
@@ -189,7 +189,7 @@ static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPla
               kIsPlainBytes<DirectoryHead> && kIsPlainBytes<DirectoryEntry>);
 
 /// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
-/// negative number, -0 too, has larger bits, so one unsigned comparison tells a valid value.
+/// negative number, -0 too, has larger bits, so one unsigned comparison finds a valid value.
 inline constexpr std::uint32_t kInfinityBits = 0x7F800000U;
 
 [[nodiscard]] constexpr float to_float(std::uint32_t bits) noexcept {

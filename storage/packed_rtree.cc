@@ -28,20 +28,14 @@ class StarTest {
   StarTest(const StarFilter& filter, const HeightEncoding& heights)
       : filter_(filter), heights_(heights), level_(level_bits(filter.level)) {}
   [[nodiscard]] bool operator()(const layout::NodeEntry& e) const {
-    // Of a node's entries few pass the first three lines, which look at whole numbers alone.
+    // Few entries of a node pass the first three lines, which look at whole numbers alone.
     const GridBox& box = filter_.box;
     return e.star_min_x <= box.max_x && box.min_x <= e.star_max_x && e.star_min_y <= box.max_y &&
            box.min_y <= e.star_max_y && e.error_max > level_ - (filter_.with_ties ? 1 : 0) &&
-           e.death_min <= level_ + 1 && (filter_.steps.empty() || has_step(e)) &&
-           (asks_no_more_ || passes(star_attributes_of(e, heights_)));
+           e.death_min <= level_ + 1 && (asks_no_more_ || passes(star_attributes_of(e, heights_)));
   }
 
  private:
-  [[nodiscard]] bool has_step(const layout::NodeEntry& e) const {
-    return !steps_within(filter_.steps, ordered_height(e.star_height_lo, heights_.type),
-                         ordered_height(e.star_height_hi, heights_.type))
-                .empty();
-  }
   [[nodiscard]] bool passes(const StarAttributes& a) const {
     return meets(a.heights, filter_.heights) &&
            (filter_.also == nullptr || filter_.also->may_hold(a));
@@ -197,9 +191,9 @@ void PackedRTree::BestFirst::open(const Waiting& at) {
   });
 }
 
-/// Of a far file, where what is visited next must be waited for: announces with it the best of what
-/// waits, which will probably be visited soon. Nodes that are at hand are opened for that; the order
-/// in which nodes are decides nothing.
+/// Announces the best of what waits, which will probably be visited soon, together with what is
+/// visited next: that must be waited for anyhow in a far file. Nodes that are at hand are opened
+/// for it; the order in which nodes are opened decides nothing.
 void PackedRTree::BestFirst::announce_with_best(const Waiting& next) {
   if (++announced_ > 2 && together_ < kMostTogether) {
     together_ *= 2;

@@ -48,7 +48,7 @@ class BestStarVisitor {
   /// bound.
   [[nodiscard]] virtual Merit bound(const StarAttributes& a) const = 0;
   /// The same for a node, whose turn among the pages this decides.
-  /// @param level  Of the node: 0 is a leaf, above pages.
+  /// @param level  Level of the node: 0 is a leaf, above pages.
   [[nodiscard]] virtual Merit bound_of_node(const StarAttributes& a, std::uint32_t level) const {
     static_cast<void>(level);
     return bound(a);
@@ -66,7 +66,7 @@ class PackedRTree final : public RecordIndex {
  public:
   /// @param nodes    Borrowed for the life of the index.
   /// @param heights  How entries hold heights.
-  /// @param pages    Of the same file, borrowed: where the file is far, a best-first search announces
+  /// @param pages    The same file's, borrowed: where that is far, a best-first search announces
   ///                 pages too. Null: it does not.
   PackedRTree(const IndexNodes& nodes, const HeightEncoding& heights,
               const DescribedPageStore* pages = nullptr)

@@ -7,7 +7,6 @@
 #include "storage/error_table.h"
 #include "storage/page_packer.h"
 #include "storage/record_order.h"
-#include "storage/record_page.h"
 
 namespace ptin {
 
@@ -15,6 +14,7 @@ PackedSegment pack_segment(const StarredRecords& records, const HeightEncoding& 
                            std::uint32_t page_bytes) {
   PackedSegment packed;
   PagePacker page(page_bytes, heights);
+  ErrorTable errors;
   const auto finish = [&] {
     layout::NodeEntry descriptor;
     const std::span<const std::byte> bytes = page.finish(descriptor);
@@ -26,41 +26,15 @@ PackedSegment pack_segment(const StarredRecords& records, const HeightEncoding& 
       finish();
       PTIN_CHECK(page.add(records.splits[i], records.ring(i)));
     }
+    errors.add(records.splits[i]);
+    packed.max_rank = std::max(packed.max_rank, records.splits[i].rank);
   }
   // A page of two segments would have the box of both, so a segment ends its last page.
   if (!page.empty()) {
     finish();
   }
+  packed.errors = errors.bins();
   return packed;
-}
-
-std::optional<PageCounts> count_pages(std::span<const std::byte> pages,
-                                      std::span<const layout::NodeEntry> descriptors,
-                                      const HeightEncoding& heights) {
-  if (descriptors.empty() || pages.size() % descriptors.size() != 0) {
-    return pages.empty() && descriptors.empty() ? std::optional<PageCounts>(PageCounts{})
-                                                : std::nullopt;
-  }
-  const std::size_t page_bytes = pages.size() / descriptors.size();
-  PageCounts counts;
-  ErrorTable errors;
-  VertexSplit r;
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    const RecordPage page(pages.subspan(i * page_bytes, page_bytes), heights);
-    if (!page.is_sound() || page.records() != descriptors[i].records) {
-      return std::nullopt;
-    }
-    for (std::uint32_t k = 0; k < page.records(); ++k) {
-      if (!page.head(k, r)) {
-        return std::nullopt;
-      }
-      errors.add(r);
-      counts.max_rank = std::max(counts.max_rank, r.rank);
-    }
-    counts.records += page.records();
-  }
-  counts.bins = errors.bins();
-  return counts;
 }
 
 }  // namespace ptin

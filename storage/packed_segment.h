@@ -5,8 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "storage/layout.h"
@@ -15,25 +13,14 @@
 
 namespace ptin {
 
-/// The pages of one segment, one behind the other, and the descriptor of each.
+/// The pages of one segment, one behind the other, and what a store says of them: whoever packs them
+/// counts, and not the one who writes all.
 struct PackedSegment {
   std::vector<std::byte> pages;
-  std::vector<layout::NodeEntry> descriptors;
-};
-
-/// What a store counts of pages, so that whoever made them counts, and not the one who writes all.
-struct PageCounts {
-  std::uint64_t records = 0;
+  std::vector<layout::NodeEntry> descriptors;  ///< Of each page.
+  std::vector<ErrorBin> errors;                ///< Of the records, as ErrorTable::bins().
   std::uint16_t max_rank = 0;
-  std::vector<ErrorBin> bins;  ///< As ErrorTable::bins().
 };
-
-/// Counts pages that were packed. None when a reader would not accept one of them, or they are not
-/// those of the descriptors.
-/// Cost: takes every record apart, some 20 ns each.
-[[nodiscard]] std::optional<PageCounts> count_pages(std::span<const std::byte> pages,
-                                                    std::span<const layout::NodeEntry> descriptors,
-                                                    const HeightEncoding& heights);
 
 /// Orders the records of a segment (storage/record_order.h) and packs them. The bytes depend on the
 /// set of records, their stars and the size of a page alone. Threads: any number at once.

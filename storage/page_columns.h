@@ -19,8 +19,8 @@ namespace ptin {
 /// The columns of a page, in the order of the file: a number for each record.
 enum class PageColumn : std::uint8_t {
   kX,
-  kY,       ///< Of u.
-  kHeight,  ///< Of u, as an ordered number; where u has none, the least of its interval.
+  kY,       ///< Position of u.
+  kHeight,  ///< Ordered height of u; where u has none, the least of its interval.
   kWest,    ///< From u to the roi's sides.
   kSouth,
   kEast,
@@ -90,7 +90,7 @@ struct OrderedHeights {
                                    : OrderedHeights{0x007FFFFF, 0xFF800000};
 }
 
-/// The frame of a page, as its header tells it.
+/// The frame of a page, as its header gives it.
 class PageColumns {
  public:
   /// @param header  Checked: widths are none that a number does not need, and all that follows from

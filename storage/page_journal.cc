@@ -33,8 +33,8 @@ PageJournal::PageJournal(FileLayer& files, const std::string& path, ScratchFile:
 
 void PageJournal::add(const layout::NodeEntry& page) {
   pending_.push_back(page);
-  end_.chain = next_in_chain(end_.chain, page);
-  ++end_.pages;
+  chain_ = next_in_chain(chain_, page);
+  ++pages_;
   if (pending_.size() == kBufferedEntries) {
     write_pending();
   }
@@ -71,30 +71,29 @@ std::optional<PublishMark> PageJournal::find_mark() const {
   return is_sound ? std::optional(mark) : std::nullopt;
 }
 
-void PageJournal::replay(const StoreCheckpoint& checkpoint,
+void PageJournal::replay(std::uint64_t pages, std::uint64_t chain,
                          const std::function<void(const layout::NodeEntry&)>& page) {
   const auto refuse = [this](const char* what) { throw Error(ErrorCode::corruption, what, path_); };
-  if (file_.size() / sizeof(layout::NodeEntry) < checkpoint.pages) {
+  if (file_.size() / sizeof(layout::NodeEntry) < pages) {
     refuse("the unfinished build's list of pages is shorter than its manifest says");
   }
-  end_ = {};
+  pages_ = chain_ = 0;
   std::vector<layout::NodeEntry> entries(kBufferedEntries);
-  while (end_.pages < checkpoint.pages) {
-    const std::span<layout::NodeEntry> part(entries.data(),
-                                            static_cast<std::size_t>(std::min<std::uint64_t>(
-                                                kBufferedEntries, checkpoint.pages - end_.pages)));
-    file_.read_at(std::as_writable_bytes(part), end_.pages * sizeof(layout::NodeEntry));
+  while (pages_ < pages) {
+    const auto part = std::span(entries).first(
+        static_cast<std::size_t>(std::min<std::uint64_t>(kBufferedEntries, pages - pages_)));
+    file_.read_at(std::as_writable_bytes(part), pages_ * sizeof(layout::NodeEntry));
     for (const layout::NodeEntry& entry : part) {
       page(entry);
-      end_.chain = next_in_chain(end_.chain, entry);
-      ++end_.pages;
+      chain_ = next_in_chain(chain_, entry);
+      ++pages_;
     }
   }
-  if (!(end_ == checkpoint)) {
+  if (chain_ != chain) {
     refuse("the unfinished build's list of pages is not the one that its manifest speaks of");
   }
-  file_.truncate(end_.pages * sizeof(layout::NodeEntry));
-  written_ = end_.pages;
+  file_.truncate(pages_ * sizeof(layout::NodeEntry));
+  written_ = pages_;
 }
 
 }  // namespace ptin

@@ -15,16 +15,6 @@
 
 namespace ptin {
 
-/// How much of an unfinished store is safely on disk.
-struct StoreCheckpoint {
-  std::uint64_t pages = 0;
-  /// A checksum over the descriptors of these pages, made by hashing each descriptor together with
-  /// the checksum of those before it. Descriptors hold the checksums of their pages, so it stands
-  /// for the content of the pages too.
-  std::uint64_t chain = 0;
-  friend bool operator==(const StoreCheckpoint&, const StoreCheckpoint&) = default;
-};
-
 /// Written before publish() puts the front of the file over the first pages: says where copies of
 /// those pages are.
 struct PublishMark {
@@ -32,7 +22,7 @@ struct PublishMark {
   std::uint64_t pages = 0;
   std::uint64_t moved_bytes = 0;  ///< From the start of the file ...
   std::uint64_t moved_to = 0;     ///< ... to this offset.
-  std::uint64_t checksum = 0;     ///< Of the fields above.
+  std::uint64_t checksum = 0;     ///< Checksum of the fields above.
 };
 
 /// An append-only file of descriptors. Memory: at most 4096 descriptors.
@@ -43,7 +33,12 @@ class PageJournal {
   PageJournal(FileLayer& files, const std::string& path, ScratchFile::Kept kept);
 
   void add(const layout::NodeEntry& page);
-  [[nodiscard]] const StoreCheckpoint& end() const noexcept { return end_; }
+  /// How many were added.
+  [[nodiscard]] std::uint64_t pages() const noexcept { return pages_; }
+  /// A checksum over the descriptors, made by hashing each one together with the checksum of those
+  /// before it. Descriptors hold the checksums of their pages, so it stands for the content of the
+  /// pages too.
+  [[nodiscard]] std::uint64_t chain() const noexcept { return chain_; }
   /// Writes what was added, and syncs the file.  @throws Error io_error, resource_exhausted
   void sync();
   /// Appends a mark behind all descriptors, and syncs the file.
@@ -51,10 +46,10 @@ class PageJournal {
 
   /// The mark at the end of the file; none when the file does not end with a sound one.
   [[nodiscard]] std::optional<PublishMark> find_mark() const;
-  /// Calls page(descriptor) for the first `checkpoint.pages` descriptors, in order, then cuts the
-  /// file behind them.
-  /// @throws Error corruption  they are not those of the checkpoint
-  void replay(const StoreCheckpoint& checkpoint,
+  /// Calls page(descriptor) for the first `pages` descriptors, in order, then cuts the file behind
+  /// them.
+  /// @throws Error corruption  their chain() is another one
+  void replay(std::uint64_t pages, std::uint64_t chain,
               const std::function<void(const layout::NodeEntry&)>& page);
 
  private:
@@ -62,7 +57,7 @@ class PageJournal {
 
   std::string path_;
   ScratchFile file_;
-  StoreCheckpoint end_;
+  std::uint64_t pages_ = 0, chain_ = 0;
   std::uint64_t written_ = 0;
   std::vector<layout::NodeEntry> pending_;
 };

@@ -43,12 +43,11 @@ bool agrees(const VertexSplit& r, std::span<const RingCorner> ring) {
   const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
   const std::size_t last = ring.size() - 1;
   const std::size_t vr = no_left ? last - 1 : last;
-  const auto is_void = [&](std::size_t i) { return (ring[i].flags & RingCorner::kVoid) != 0; };
   return r.flags <= VertexSplit::kAllFlags && !(no_left && no_right) &&
          r.w == ring[no_left ? last : 0].position && r.vl == ring[no_left ? 0 : 1].position &&
          r.vr == ring[vr].position &&
-         ((r.flags & VertexSplit::kLeftVoid) != 0) == (!no_left && is_void(0)) &&
-         ((r.flags & VertexSplit::kRightVoid) != 0) == (!no_right && is_void(vr));
+         ((r.flags & VertexSplit::kLeftVoid) != 0) == (!no_left && ring[0].is_void()) &&
+         ((r.flags & VertexSplit::kRightVoid) != 0) == (!no_right && ring[vr].is_void());
 }
 
 }  // namespace
@@ -73,22 +72,23 @@ void PagePacker::check(const VertexSplit& r, std::span<const RingCorner> ring) c
 
 /// The numbers of a record, and its corners at the end of corners_.
 PagePacker::Item PagePacker::item_of(const VertexSplit& r, std::span<const RingCorner> ring) {
-  const bool has_height = (r.flags & VertexSplit::kVertexVoid) == 0;
   const bool has_heights = heights_.code(r.height_lo) <= heights_.code(r.height_hi);
   const auto ordered = [&](HeightBits h) { return ordered_height(h, heights_.type); };
-  PTIN_CHECK(has_heights || !has_height);
+  PTIN_CHECK(has_heights || !r.has_height());
   const std::uint32_t lo = has_heights ? ordered(r.height_lo) : ordered(0);
   const std::uint32_t hi = has_heights ? ordered(r.height_hi) : lo;
-  const std::uint32_t height = has_height ? ordered(r.height) : lo;
+  const std::uint32_t height = r.has_height() ? ordered(r.height) : lo;
   unsigned offset_bits = 0;
   unsigned height_bits = 0;
   unsigned death_bits = 0;
   const std::size_t first = corners_.size();
   for (const RingCorner& c : ring) {
-    const bool is_known = (c.flags & RingCorner::kNoHeight) == 0;
-    const Corner own{std::int64_t{c.position.x} - r.u.x, std::int64_t{c.position.y} - r.u.y,
-                     is_known ? std::int64_t{ordered(c.height)} - height : 0,
-                     stored_death(c.death, short_bits(r.error)), c.flags};
+    const RelativeCorner own{std::int64_t{c.position.x} - r.u.x,
+                             std::int64_t{c.position.y} - r.u.y,
+                             c.has_height() ? std::int64_t{ordered(c.height)} - height : 0,
+                             stored_death(c.death, short_bits(r.error)),
+                             c.is_void(),
+                             c.has_height()};
     offset_bits = std::max({offset_bits, signed_width(own.x), signed_width(own.y)});
     height_bits = std::max(height_bits, signed_width(own.height));
     death_bits = std::max(death_bits, static_cast<unsigned>(std::bit_width(own.death)));
@@ -127,9 +127,9 @@ void PagePacker::widen(Frame& frame, const Item& item) const {
                               item.numbers[at(PageColumn::kHeightBits)] +
                               item.numbers[at(PageColumn::kDeathBits)]);
   for (std::size_t i = 0; i < degree; ++i) {
-    const Corner& c = corners_[item.first_corner + i];
-    frame.has_void |= (c.flags & RingCorner::kVoid) != 0;
-    frame.has_no_height |= (c.flags & RingCorner::kNoHeight) != 0;
+    const RelativeCorner& c = corners_[item.first_corner + i];
+    frame.has_void |= c.is_void;
+    frame.has_no_height |= !c.has_height;
   }
 }
 
@@ -231,13 +231,13 @@ void PagePacker::write_rings(layout::PageHeader& header, std::size_t runs) {
     const unsigned height_bits = item.numbers[at(PageColumn::kHeightBits)];
     const unsigned death_bits = item.numbers[at(PageColumn::kDeathBits)];
     for (std::size_t k = 0; k < item.numbers[at(PageColumn::kDegree)]; ++k) {
-      const Corner& c = corners_[item.first_corner + k];
+      const RelativeCorner& c = corners_[item.first_corner + k];
       put(offset_bits, c.x);
       put(offset_bits, c.y);
       put(height_bits, c.height);
       put(death_bits, c.death);
-      put(header.void_bits, (c.flags & RingCorner::kVoid) != 0 ? 1 : 0);
-      put(header.no_height_bits, (c.flags & RingCorner::kNoHeight) != 0 ? 1 : 0);
+      put(header.void_bits, c.is_void ? 1 : 0);
+      put(header.no_height_bits, c.has_height ? 0 : 1);
     }
   }
   header.ring_bytes = static_cast<std::uint16_t>((bit + 7) / 8 - rings);

@@ -11,6 +11,7 @@
 
 #include "storage/descriptor.h"
 #include "storage/page_columns.h"
+#include "storage/ring_check.h"
 #include "storage/star.h"
 
 namespace ptin {
@@ -44,12 +45,6 @@ class PagePacker {
     Numbers numbers;  ///< For each column.
     std::size_t first_corner;
   };
-  /// Corner of a ring, relative to its record.
-  struct Corner {
-    std::int64_t x, y, height;
-    std::uint32_t death;  ///< stored_death().
-    std::uint8_t flags;
-  };
   /// The short numbers of a page that have a base, and whether others are there.
   struct ShortRange {
     ShortBits least = kShortInfinity, most = 0;
@@ -63,7 +58,7 @@ class PagePacker {
     Numbers least, most;
     ShortRange error, deviation;
     bool has_void = false, has_no_height = false;
-    std::size_t own_bits = 0;  ///< Of all corners: offsets, heights and deaths.
+    std::size_t own_bits = 0;  ///< Bits of all corners: offsets, heights and deaths.
     std::size_t corners = 0;
   };
 
@@ -82,7 +77,7 @@ class PagePacker {
   Descriptor descriptor_;
   Frame frame_;
   std::vector<Item> items_;
-  std::vector<Corner> corners_;
+  std::vector<RelativeCorner> corners_;
 };
 
 }  // namespace ptin

@@ -14,7 +14,7 @@ namespace ptin {
 struct PageSlots {
   std::uint64_t pages = 0;
   std::uint64_t first_page = 0;  ///< The page in slot 0; below `pages`, or 0 when there is none.
-  std::uint64_t offset = 0;      ///< Of slot 0 in the file.
+  std::uint64_t offset = 0;      ///< Place of slot 0 in the file.
   std::uint32_t page_bytes = 0;
 
   /// REQUIRES: id < pages.

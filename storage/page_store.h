@@ -31,12 +31,12 @@ class PageStore {
   [[nodiscard]] virtual std::uint64_t page_count() const noexcept = 0;
   [[nodiscard]] virtual std::size_t page_bytes() const noexcept = 0;
 
-  /// Whether each page that was not announced is waited for as long as a whole round of pages that
-  /// were (storage/file/readable_file.h).
+  /// True for files elsewhere, where one page that was not announced costs as much time as a whole
+  /// announced batch (storage/file/readable_file.h).
   [[nodiscard]] virtual bool is_far() const noexcept { return false; }
 
-  /// Tells the kernel which pages are read next; pages that lie near each other become one range.
-  /// `ids` ascend. A hint: never fails.
+  /// Announces to the kernel which pages are read next; pages that lie near each other become one
+  /// range. `ids` ascend. A hint: never fails.
   virtual void announce(std::span<const PageId> ids, IoCounters& counters) const noexcept = 0;
 
   /// Copies page `id` into `out` (page_bytes() long). The copy is what is checked, so bytes cannot

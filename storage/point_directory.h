@@ -47,7 +47,7 @@ struct DirectoryRoot {
   [[nodiscard]] std::uint64_t entries_of(std::uint32_t cell) const noexcept {
     return end[cell] - (cell == 0 ? 0 : end[cell - 1]);
   }
-  /// Of a node, from the begin of all nodes on.
+  /// Place of a node, from the beginning of all nodes on.
   [[nodiscard]] ByteRange range_of(std::uint32_t cell) const noexcept {
     return {(end[cell] - entries_of(cell)) * layout::kDirectoryEntryBytes,
             entries_of(cell) * layout::kDirectoryEntryBytes};
@@ -67,7 +67,7 @@ class PointDirectory {
 
   /// The pages that may hold living stars at each of some places.
   /// @param places  Within the bounds; each the least box around a point, so at most one unit wide.
-  /// @param filter  Of the level; nothing else of it is asked.
+  /// @param filter  Filter of the level; nothing else of it is asked.
   /// @param found   As many; each receives the pages of its place, those that probably hold it first.
   /// Cost: the nodes of the places' cells, each once, announced together.
   /// @throws Error corruption, io_error

@@ -27,7 +27,7 @@ struct VertexSplit {
   static constexpr std::uint16_t kAnyVoid = kLeftVoid | kRightVoid | kVertexVoid;
 
   GridPoint u, w, vl, vr;
-  HeightBits height = 0;  ///< Of u; 0 when kVertexVoid.
+  HeightBits height = 0;  ///< Height of u; 0 when kVertexVoid.
   GridBox roi;            ///< Saturated.
   HeightBits height_lo =
       0;  ///< Saturated interval of heights, as stored; lo > hi (as codes) when empty.
@@ -36,6 +36,7 @@ struct VertexSplit {
   float deviation = 0.0F;  ///< Saturated, rounded outward, height's unit.
   std::uint16_t rank = 0;
   std::uint16_t flags = 0;
+  [[nodiscard]] bool has_height() const noexcept { return (flags & kVertexVoid) == 0; }  ///< u.
   friend bool operator==(const VertexSplit&, const VertexSplit&) = default;
 };
 

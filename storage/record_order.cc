@@ -42,7 +42,7 @@ using lanes::Int4;
 
 /// What decides on the place of a record.
 struct Item {
-  Int4 box;  ///< Of the star: min x, min y, -max x, -max y, so that a union is four minima.
+  Int4 box;  ///< The star's box as min x, min y, -max x, -max y: a union is four minima.
   VertexKey key;
   std::uint32_t error;  ///< Steps above the least that is not 0; 0 is an octave below.
   std::uint32_t record;
@@ -110,7 +110,7 @@ class Cutter {
 
   struct Choice {
     std::size_t axis = 0;
-    std::uint64_t before = 0, of = 0;  // Of the `of` records drawn, `before` go first.
+    std::uint64_t before = 0, of = 0;  // `before` of the `of` records drawn go first.
     bool is_made = false;
   };
 

@@ -5,208 +5,95 @@
 #include <bit>
 #include <cstring>
 
-#include "engine/geometry/infinity.h"
+#include "engine/error.h"
 #include "storage/bit_fields.h"
-#include "storage/descriptor.h"
+#include "storage/descriptor_bounds.h"
 #include "storage/layout.h"
 #include "storage/ring_check.h"
 
 namespace ptin {
 
-RecordPage::RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept
-    : bytes_(bytes), heights_(heights) {
+namespace {
+
+[[noreturn]] void throw_corrupt(const std::string& what, const std::string& path, PageId id) {
+  throw Error(ErrorCode::corruption, what, path + ", page " + std::to_string(index_of(id)));
+}
+
+}  // namespace
+
+void check_descriptor(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
+                      const HeightEncoding& heights, std::size_t page_bytes) {
+  if (descriptor.records == 0 || descriptor.records > page_bytes / layout::kLeastRecordBytes ||
+      !is_sound(descriptor, heights)) [[unlikely]] {
+    throw_corrupt("the descriptor of the page holds values that no program wrote", path, id);
+  }
+}
+
+RecordPage::RecordPage(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
+                       const HeightEncoding& heights, std::span<const std::byte> bytes)
+    : path_(path), id_(id), descriptor_(descriptor), heights_(heights), bytes_(bytes) {
+  check_descriptor(path, id, descriptor, heights, bytes.size());
   layout::PageHeader header;
-  if (bytes.size() >= layout::kMinPageBytes) {
-    std::memcpy(&header, bytes.data(), sizeof header);
-    is_sound_ = columns_.read(header, bytes.size());
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (!columns_.read(header, bytes.size()) || records() != descriptor.records) [[unlikely]] {
+    throw_corrupt(
+        "the page begins with numbers that no program wrote, or that its descriptor excludes", path,
+        id);
   }
 }
 
-GridBox RecordPage::roi(std::size_t i) const noexcept {
-  // Columns hold at most 32 bits, so sums fit 64. What leaves the grid is cut down to 32 bits, and
-  // lies off the grid still, or is found to be no roi of u.
-  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(number(c, i)); };
-  const std::int64_t x = at(PageColumn::kX);
-  const std::int64_t y = at(PageColumn::kY);
-  const auto whole = [](std::int64_t v) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, INT32_MIN, INT32_MAX));
-  };
-  return {whole(x - at(PageColumn::kWest)), whole(y - at(PageColumn::kSouth)),
-          whole(x + at(PageColumn::kEast)), whole(y + at(PageColumn::kNorth))};
+void RecordPage::report(std::size_t record) const {
+  throw_corrupt("record " + std::to_string(record) +
+                    " holds values that no program wrote, or that its page's descriptor excludes",
+                path_, id_);
 }
 
-/// The records of a run whose roi meets a box: the roi is looked at where u lies outside of the box,
-/// but no farther from it than any roi of the page reaches.
-std::uint64_t RecordPage::near_box(std::uint32_t first, std::uint32_t count,
-                                   const GridBox& box) const noexcept {
-  const auto reach = [&](PageColumn c) {
-    return static_cast<std::int64_t>(
-        (std::uint64_t{1} << columns_.header().width[static_cast<std::size_t>(c)]) - 1);
-  };
-  const std::int64_t low_x = box.min_x - reach(PageColumn::kEast);
-  const std::int64_t high_x = box.max_x + reach(PageColumn::kWest);
-  const std::int64_t low_y = box.min_y - reach(PageColumn::kNorth);
-  const std::int64_t high_y = box.max_y + reach(PageColumn::kSouth);
-  Run xs, ys;  // NOLINT: written before read
-  read_run(PageColumn::kX, first, count, xs);
-  read_run(PageColumn::kY, first, count, ys);
-  std::uint64_t near = 0;
-  std::uint64_t within = 0;  // u lies in the box
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const auto x = static_cast<std::int64_t>(xs[k]);
-    const auto y = static_cast<std::int64_t>(ys[k]);
-    const bool is_near = (low_x <= x) & (x <= high_x) & (low_y <= y) & (y <= high_y);
-    const bool is_within =
-        (box.min_x <= x) & (x <= box.max_x) & (box.min_y <= y) & (y <= box.max_y);
-    near |= std::uint64_t{is_near} << k;
-    within |= std::uint64_t{is_within} << k;
+void PageRun::read(PageColumn column, std::uint64_t records) noexcept {
+  const auto c = static_cast<std::size_t>(column);
+  // A run of numbers is taken out four times faster than as many single ones.
+  if (4 * static_cast<std::uint32_t>(std::popcount(records)) >= count_) {
+    page_.columns().read_run(page_.bytes(), column, first_, std::span(numbers_[c]).first(count_));
+    taken_[c] = all();
+    return;
   }
-  for (std::uint64_t left = near & ~within; left != 0; left &= left - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-    near ^= std::uint64_t{!meets(roi(first + k), box)} << k;
-  }
-  return near;
-}
-
-/// The records of a run whose heights may be those that a filter asks for.
-std::uint64_t RecordPage::with_heights(std::uint32_t first, std::uint32_t count,
-                                       const StarFilter& filter) const noexcept {
-  Run heights, below, above, flags;  // NOLINT: written before read
-  read_run(PageColumn::kHeight, first, count, heights);
-  read_run(PageColumn::kBelow, first, count, below);
-  read_run(PageColumn::kAbove, first, count, above);
-  read_run(PageColumn::kFlags, first, count, flags);
-  const auto code = [&](std::uint64_t ordered) {
-    return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
-  };
-  std::uint64_t wanted = 0;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const Interval codes = (flags[k] & kPageNoHeights) != 0
-                               ? Interval{}
-                               : Interval{code(heights[k] - below[k]), code(heights[k] + above[k])};
-    wanted |= std::uint64_t{meets(codes, filter.heights)} << k;
-  }
-  return wanted;
-}
-
-/// The records of a run within whose heights a step lies. A record without heights spans none.
-std::uint64_t RecordPage::with_steps(std::uint32_t first, std::uint32_t count,
-                                     std::span<const std::uint64_t> steps) const noexcept {
-  Run low, high, above;  // NOLINT: written before read
-  read_run(PageColumn::kHeight, first, count, high);
-  read_run(PageColumn::kBelow, first, count, low);
-  read_run(PageColumn::kAbove, first, count, above);
-  std::uint64_t least = UINT64_MAX;
-  std::uint64_t most = 0;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    low[k] = high[k] - low[k];
-    high[k] += above[k];
-    least = std::min(least, low[k]);
-    most = std::max(most, high[k]);
-  }
-  std::uint64_t wanted = 0;
-  for (const std::uint64_t step : steps_within(steps, least, most)) {
-    for (std::uint32_t k = 0; k < count; ++k) {
-      wanted |= static_cast<std::uint64_t>((low[k] < step) & (step <= high[k])) << k;
-    }
-  }
-  return wanted;
-}
-
-std::uint64_t RecordPage::near_stars(std::uint32_t first, std::uint32_t count,
-                                     const StarFilter& filter, bool is_within) const noexcept {
-  std::uint64_t wanted =
-      is_within ? ~std::uint64_t{0} >> (kRun - count) : near_box(first, count, filter.box);
-  if (wanted != 0 && filter.heights != kAllHeights) {
-    wanted &= with_heights(first, count, filter);
-  }
-  if (wanted != 0 && !filter.steps.empty()) {
-    wanted &= with_steps(first, count, filter.steps);
-  }
-  for (std::uint64_t left = filter.also_of_stars ? wanted : 0; left != 0; left &= left - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-    const StarAttributes star{roi(first + k), {}, kInfinity, -kInfinity};
-    wanted ^= std::uint64_t{!filter.also->may_hold(star)} << k;
-  }
-  const std::int64_t below = level_bits(filter.level) - (filter.with_ties ? 1 : 0);
-  for (std::uint64_t left = wanted; left != 0 && below >= 0; left &= left - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-    wanted ^= std::uint64_t{static_cast<std::int64_t>(error_bits(first + k)) <= below} << k;
-  }
-  return wanted;
-}
-
-void RecordPage::read_run(std::uint32_t first, std::uint32_t count, RecordRun& run) const noexcept {
-  run.first = first;
-  run.count = count;
-  for (std::size_t c = 0; c < kPageColumns; ++c) {
-    read_run(static_cast<PageColumn>(c), first, count, run.numbers[c]);
+  taken_[c] |= records;
+  for (; records != 0; records &= records - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(records));
+    numbers_[c][k] = page_.columns().at(page_.bytes(), column, first_ + k);
   }
 }
 
-Attributes RecordPage::attributes(const RecordRun& run, std::uint32_t k) const noexcept {
-  const auto at = [&](PageColumn c) { return run.numbers[static_cast<std::size_t>(c)][k]; };
-  const auto code = [&](std::uint64_t ordered) {
-    return heights_.code(height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type));
-  };
-  const auto bound = [](std::uint64_t stored, ShortBits base) {
-    return static_cast<double>(short_value(static_cast<ShortBits>(short_of_stored(stored, base))));
-  };
-  const auto whole = [](std::uint64_t v) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
-  };
-  const std::uint64_t height = at(PageColumn::kHeight);
-  Attributes a;
-  a.roi = {whole(at(PageColumn::kX) - at(PageColumn::kWest)),
-           whole(at(PageColumn::kY) - at(PageColumn::kSouth)),
-           whole(at(PageColumn::kX) + at(PageColumn::kEast)),
-           whole(at(PageColumn::kY) + at(PageColumn::kNorth))};
-  if ((at(PageColumn::kFlags) & kPageNoHeights) == 0) {
-    a.heights = {code(height - at(PageColumn::kBelow)), code(height + at(PageColumn::kAbove))};
-  }
-  a.error = bound(at(PageColumn::kError), columns_.header().error);
-  a.deviation = bound(at(PageColumn::kDeviation), columns_.header().deviation);
-  return a;
-}
-
-/// The head of a record whose numbers are at(column).
-template <class NumberOf>
-inline bool RecordPage::head_of(const NumberOf& at, VertexSplit& r) const noexcept {
+bool RecordPage::head(const PageRun& run, std::uint32_t k, VertexSplit& r) const noexcept {
   static_assert(VertexSplit::kNoLeft == kPageNoLeft << 2 &&
                 VertexSplit::kNoRight == kPageNoRight << 2 &&
                 VertexSplit::kVertexVoid == kPageVertexVoid << 2);
-  const std::uint64_t x = at(PageColumn::kX);
-  const std::uint64_t y = at(PageColumn::kY);
-  // Numbers of 33 bits at most, and those that wrap around are the largest ones.
-  const std::uint64_t west = x - at(PageColumn::kWest);
-  const std::uint64_t south = y - at(PageColumn::kSouth);
-  const std::uint64_t east = x + at(PageColumn::kEast);
-  const std::uint64_t north = y + at(PageColumn::kNorth);
-  const std::uint64_t flags = at(PageColumn::kFlags);
-  const std::uint64_t rank = at(PageColumn::kRank);
-  const std::uint32_t error = short_of_stored(at(PageColumn::kError), columns_.header().error);
-  const std::uint32_t deviation =
-      short_of_stored(at(PageColumn::kDeviation), columns_.header().deviation);
-  const std::uint64_t height = at(PageColumn::kHeight);
-  const std::uint64_t low = height - at(PageColumn::kBelow);
-  const std::uint64_t high = height + at(PageColumn::kAbove);
+  const std::uint64_t x = run.at(PageColumn::kX, k);
+  const std::uint64_t y = run.at(PageColumn::kY, k);
+  const std::uint64_t flags = run.at(PageColumn::kFlags, k);
+  const std::uint64_t rank = run.at(PageColumn::kRank, k);
+  const std::uint32_t error = run.error_bits(k);
+  const std::uint32_t deviation = run.deviation_bits(k);
+  const auto [height, low, high] = run.heights(k);
   const bool has_height = (flags & kPageVertexVoid) == 0;
   const bool has_heights = (flags & kPageNoHeights) == 0;
   constexpr std::uint64_t kBothSides = kPageNoLeft | kPageNoRight;
   const auto [least, most] = ordered_heights(heights_.type);
   constexpr std::uint64_t kEnd = kGridMax;
-  if ((x > kEnd) | (y > kEnd) | (west > kEnd) | (south > kEnd) | (east > kEnd) | (north > kEnd) |
-      (low > height) | (low < least) | (high > most) | (error > kShortInfinity) |
-      (deviation > kShortInfinity) | (rank > UINT16_MAX) | (has_height & !has_heights) |
-      ((flags & kBothSides) == kBothSides)) {
+  // Sides are at most 2^31 - 1 away from u. So where u is on the grid, a side in the west or the
+  // south fits 32 bits, and one in the east or the north that does not lies west or south of u.
+  const GridBox roi = run.roi(k);
+  const GridPoint u{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+  if ((x > kEnd) | (y > kEnd) | (roi.min_x < 0) | (roi.min_y < 0) | (roi.max_x < u.x) |
+      (roi.max_y < u.y) | (roi.max_x > kGridMax) | (roi.max_y > kGridMax) | (low > height) |
+      (low < least) | (high > most) | (error > kShortInfinity) | (deviation > kShortInfinity) |
+      (rank > UINT16_MAX) | (has_height & !has_heights) | ((flags & kBothSides) == kBothSides)) {
     return false;
   }
   const auto bits = [&](std::uint64_t ordered) {
     return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
   };
-  r.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-  r.roi = {static_cast<std::int32_t>(west), static_cast<std::int32_t>(south),
-           static_cast<std::int32_t>(east), static_cast<std::int32_t>(north)};
+  r.u = u;
+  r.roi = roi;
   r.height = has_height ? bits(height) : 0;
   r.height_lo = bits(low);
   r.height_hi = bits(high);
@@ -221,38 +108,33 @@ inline bool RecordPage::head_of(const NumberOf& at, VertexSplit& r) const noexce
   return true;
 }
 
-bool RecordPage::head(std::size_t i, VertexSplit& r) const noexcept {
-  return head_of([&](PageColumn c) { return number(c, i); }, r);
-}
-
-template <class NumberOf>
-inline RingShape RecordPage::shape_of(const NumberOf& at) const noexcept {
-  const auto degree = static_cast<unsigned>(at(PageColumn::kDegree));
-  const auto offset_bits = static_cast<unsigned>(at(PageColumn::kOffsetBits));
-  const auto height_bits = static_cast<unsigned>(at(PageColumn::kHeightBits));
-  const auto death_bits = static_cast<unsigned>(at(PageColumn::kDeathBits));
-  return {degree, offset_bits, height_bits, death_bits,
-          2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
-}
-
-/// Finds the ring of record i: from `place`, where that is in the same run and not behind it, else
-/// from the begin of the run. False when the ring cannot be one, or would not lie where rings lie.
-/// @param shape  Tells the shape of a record's ring.
-template <class ShapeOf>
-inline bool RecordPage::find(std::size_t i, RingPlace& place,
-                             const ShapeOf& shape_of_record) const noexcept {
+/// Finds the ring of a record: from `place`, where that is in the same run of rings and not behind
+/// it, else from the begin of the run. False when the ring cannot be one, or would not lie where
+/// rings lie.
+bool RecordPage::find(const PageRun& run, std::uint32_t k, RingPlace& place) const noexcept {
+  const std::size_t i = run.first() + k;
   if (place.record == i) {
     return place.is_sound;
   }
-  const std::size_t run = i / layout::kRingRun;
-  if (place.record > i || place.record < run * layout::kRingRun) {
-    place.record = run * layout::kRingRun;
-    place.bit = columns_.run_begin(bytes_.data(), run);
-    place.shape = shape_of_record(place.record);
+  const auto shape_of = [&](std::size_t record) -> RingShape {
+    const auto at = [&](PageColumn c) {
+      return static_cast<unsigned>(run.at(c, static_cast<std::uint32_t>(record - run.first())));
+    };
+    const unsigned offset_bits = at(PageColumn::kOffsetBits);
+    const unsigned height_bits = at(PageColumn::kHeightBits);
+    const unsigned death_bits = at(PageColumn::kDeathBits);
+    return {at(PageColumn::kDegree), offset_bits, height_bits, death_bits,
+            2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
+  };
+  const std::size_t rings = i / layout::kRingRun;
+  if (place.record > i || place.record < rings * layout::kRingRun) {
+    place.record = rings * layout::kRingRun;
+    place.bit = columns_.run_begin(bytes_.data(), rings);
+    place.shape = shape_of(place.record);
   }
   while (place.record < i) {
     place.bit += place.shape.bits();
-    place.shape = shape_of_record(++place.record);
+    place.shape = shape_of(++place.record);
   }
   const RingShape& shape = place.shape;
   place.is_sound =
@@ -261,14 +143,8 @@ inline bool RecordPage::find(std::size_t i, RingPlace& place,
   return place.is_sound;
 }
 
-bool RecordPage::find(std::size_t i, RingPlace& place) const noexcept {
-  return find(i, place, [this](std::size_t record) {
-    return shape_of([&](PageColumn c) { return number(c, record); });
-  });
-}
-
-inline GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
-                                             std::size_t bit) const noexcept {
+GridPoint RecordPage::corner_position(GridPoint u, const RingShape& shape,
+                                      std::size_t bit) const noexcept {
   const unsigned width = shape.offset_bits;
   std::uint64_t x, y;
   if (2 * width <= kMostFieldBits) [[likely]] {
@@ -296,7 +172,7 @@ void RecordPage::for_each_corner(const RingPlace& place, const Visit& visit) con
   const layout::PageHeader& h = columns_.header();
   const RingShape shape = place.shape;
   const auto fields = [&](const auto& take) {
-    StoredCorner c;
+    RelativeCorner c;
     c.x = with_sign(take(shape.offset_bits), shape.offset_bits);
     c.y = with_sign(take(shape.offset_bits), shape.offset_bits);
     c.height = with_sign(take(shape.height_bits), shape.height_bits);
@@ -327,7 +203,7 @@ void RecordPage::for_each_corner(const RingPlace& place, const Visit& visit) con
 }
 
 /// The vertices of a split and the classes of its sides, from the ring of a record whose head is `r`.
-inline bool RecordPage::ends_of(const RingPlace& place, VertexSplit& r) const noexcept {
+bool RecordPage::ends_of(const RingPlace& place, VertexSplit& r) const noexcept {
   const RingShape& shape = place.shape;
   const bool no_left = (r.flags & VertexSplit::kNoLeft) != 0;
   const bool no_right = (r.flags & VertexSplit::kNoRight) != 0;
@@ -347,41 +223,9 @@ inline bool RecordPage::ends_of(const RingPlace& place, VertexSplit& r) const no
          r.vl != r.u && r.vr != r.u;
 }
 
-bool RecordPage::split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept {
-  return head(i, r) && find(i, place) && ends_of(place, r);
-}
-
-bool RecordPage::split(const RecordRun& run, std::uint32_t k, RingPlace& place,
+bool RecordPage::split(const PageRun& run, std::uint32_t k, RingPlace& place,
                        VertexSplit& r) const noexcept {
-  const auto at = [&](std::size_t j) {
-    return [&run, j](PageColumn c) { return run.numbers[static_cast<std::size_t>(c)][j]; };
-  };
-  // Runs begin where runs of rings begin, so every record that find() looks at is in this one.
-  static_assert(kRun % layout::kRingRun == 0);
-  return head_of(at(k), r) &&
-         find(run.first + k, place,
-              [&](std::size_t record) { return shape_of(at(record - run.first)); }) &&
-         ends_of(place, r);
-}
-
-bool RecordPage::may_live(std::size_t i, RingPlace& place, std::int32_t level) const noexcept {
-  if (!find(i, place)) {
-    return true;
-  }
-  const RingShape& shape = place.shape;
-  // 0 lives on, 1 dies at error 0, and from `first` on deaths are at or below the level.
-  const std::uint32_t all_below = level < 0 ? 0 : 1;
-  const std::uint32_t first =
-      level < 0 ? UINT32_MAX : error_bits(i) - static_cast<std::uint32_t>(level) + kFirstAboveBase;
-  const std::uint64_t border = number(PageColumn::kFlags, i) & (kPageNoLeft | kPageNoRight);
-  const unsigned triangles = shape.degree - (border == 0 ? 0 : 1);
-  std::size_t bit = place.bit + 2 * shape.offset_bits + shape.height_bits;
-  bool lives = false;
-  for (unsigned k = 0; k < triangles; ++k, bit += shape.corner_bits) {
-    const auto death = static_cast<std::uint32_t>(read_bits(bytes_.data(), bit, shape.death_bits));
-    lives |= (death <= all_below) | (death >= first);
-  }
-  return lives;
+  return head(run, k, r) && find(run, k, place) && ends_of(place, r);
 }
 
 namespace {
@@ -400,23 +244,24 @@ bool contains(const GridBox& box, const RingSpan& span) noexcept {
 
 }  // namespace
 
-bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
+bool RecordPage::ring(const PageRun& run, std::uint32_t k, RingPlace& place, const VertexSplit& r,
                       std::vector<RingCorner>& out, RingSpan& span) const {
-  if (!find(i, place)) {
+  if (!find(run, k, place)) {
     return false;
   }
   const unsigned degree = place.shape.degree;
-  const auto height = static_cast<std::int64_t>(number(PageColumn::kHeight, i));
+  const OrderedInterval own = run.heights(k);
+  const auto height = static_cast<std::int64_t>(own.height);
   const std::uint32_t error = short_bits(r.error);
   const bool is_closed = has_closed_ring(r);
-  RingCheck check((r.flags & VertexSplit::kVertexVoid) == 0);
+  RingCheck check(r.has_height());
   const std::size_t first = out.size();
   out.resize(first + degree);
   RingCorner* const ring = out.data() + first;
   span = {};
   bool is_sound = true;
-  for_each_corner(place, [&](unsigned k, const StoredCorner& c) {
-    check.add({c.x, c.y, c.has_height, c.is_void});
+  for_each_corner(place, [&](unsigned n, const RelativeCorner& c) {
+    check.add(c);
     widen(span, r.u.x + c.x, r.u.y + c.y);
     const std::int64_t ordered = height + c.height;
     const std::uint32_t below = c.death < kFirstAboveBase ? error : c.death - kFirstAboveBase;
@@ -426,24 +271,97 @@ bool RecordPage::ring(std::size_t i, RingPlace& place, const VertexSplit& r,
     const auto known = static_cast<std::uint32_t>(ordered);
     span.low = c.has_height ? std::min(span.low, known) : span.low;
     span.high = c.has_height ? std::max(span.high, known) : span.high;
-    const bool is_triangle = is_closed || k + 1 < degree;
+    const bool is_triangle = is_closed || n + 1 < degree;
     is_sound &= is_triangle | (c.death == 0);
     const std::uint32_t death = c.death == 0 ? 0 : error - below + 1;  // as death_bits()
     span.least_death = is_triangle ? std::min(span.least_death, death) : span.least_death;
-    ring[k] = {{static_cast<std::int32_t>(r.u.x + c.x), static_cast<std::int32_t>(r.u.y + c.y)},
+    ring[n] = {{static_cast<std::int32_t>(r.u.x + c.x), static_cast<std::int32_t>(r.u.y + c.y)},
                c.has_height ? height_of_ordered(known, heights_.type) : 0,
                c.death == 0 ? kLivesOn : short_value(static_cast<ShortBits>(error - below)),
                static_cast<std::uint8_t>((c.is_void ? unsigned{RingCorner::kVoid} : 0U) |
                                          (c.has_height ? 0U : unsigned{RingCorner::kNoHeight}))};
   });
-  const bool has_heights = (number(PageColumn::kFlags, i) & kPageNoHeights) == 0;
+  const bool has_heights = (run.at(PageColumn::kFlags, k) & kPageNoHeights) == 0;
   const bool is_within =
-      span.low > span.high ||
-      (has_heights &&
-       height - static_cast<std::int64_t>(number(PageColumn::kBelow, i)) <= span.low &&
-       span.high <= height + static_cast<std::int64_t>(number(PageColumn::kAbove, i)));
+      span.low > span.high || (has_heights && own.low <= span.low && span.high <= own.high);
   return is_sound && is_within && contains(r.roi, span) &&
          (is_closed ? check.is_closed_ring() : check.is_open_ring());
+}
+
+bool RecordPage::admits(const VertexSplit& r, const RingSpan& span) const noexcept {
+  const layout::NodeEntry& d = descriptor_;
+  const std::uint32_t lo = ordered_height(d.star_height_lo, heights_.type);
+  const std::uint32_t hi = ordered_height(d.star_height_hi, heights_.type);
+  const std::uint32_t own = ordered_height(r.height, heights_.type);
+  return d.star_min_x <= std::min<std::int64_t>(span.min_x, r.u.x) &&
+         d.star_min_y <= std::min<std::int64_t>(span.min_y, r.u.y) &&
+         std::max<std::int64_t>(span.max_x, r.u.x) <= d.star_max_x &&
+         std::max<std::int64_t>(span.max_y, r.u.y) <= d.star_max_y &&
+         (!r.has_height() || (lo <= own && own <= hi)) &&
+         (span.low > span.high || (lo <= span.low && span.high <= hi)) &&
+         d.death_min <= span.least_death;
+}
+
+/// @param bounds     Those of the descriptor.
+/// @param predicate  Null: all records are wanted. Those of a page of which all are, are not asked
+///                   for their attributes one by one.
+template <class Bounds>
+void RecordPage::decode_within(const Bounds& bounds, const AttributePredicate* predicate,
+                               std::vector<VertexSplit>& out) const {
+  const bool wants_all =
+      predicate == nullptr || predicate->holds_for_all(attributes_of(descriptor_, heights_),
+                                                       short_value(descriptor_.error_min));
+  const GridBox reach = wants_all ? GridBox{} : predicate->reach();
+  const std::size_t before = out.size();
+  RingPlace place;
+  for (PageRun run(*this); run.next();) {
+    run.take_all();
+    for (std::uint32_t k = 0; k < run.count(); ++k) {
+      if (!wants_all) {
+        const Attributes a = run.attributes(k);
+        if (!meets(a.roi, reach) || !predicate->holds(a)) {
+          continue;
+        }
+      }
+      VertexSplit r;
+      if (!split(run, k, place, r) || bounds.excludes(r)) [[unlikely]] {
+        out.resize(before);
+        report(run.first() + k);
+      }
+      out.push_back(r);
+    }
+  }
+}
+
+void RecordPage::decode(std::vector<VertexSplit>& out) const {
+  heights_.type == HeightType::int32
+      ? decode_within(DescriptorBounds<std::int32_t>(descriptor_), nullptr, out)
+      : decode_within(DescriptorBounds<float>(descriptor_), nullptr, out);
+}
+
+void RecordPage::decode_matching(const AttributePredicate& predicate,
+                                 std::vector<VertexSplit>& out) const {
+  heights_.type == HeightType::int32
+      ? decode_within(DescriptorBounds<std::int32_t>(descriptor_), &predicate, out)
+      : decode_within(DescriptorBounds<float>(descriptor_), &predicate, out);
+}
+
+void RecordPage::decode(StarredRecords& out) const {
+  const std::size_t before = out.size();
+  decode(out.splits);
+  RingPlace place;
+  RingSpan span;
+  for (PageRun run(*this); run.next();) {
+    run.take_all();
+    for (std::uint32_t k = 0; k < run.count(); ++k) {
+      const VertexSplit& r = out.splits[before + run.first() + k];
+      if (!ring(run, k, place, r, out.corners, span) || !admits(r, span)) [[unlikely]] {
+        out.resize(before);
+        report(run.first() + k);
+      }
+      out.ring_end.push_back(static_cast<std::uint32_t>(out.corners.size()));
+    }
+  }
 }
 
 }  // namespace ptin

@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The numbers of one page of records and stars, taken out of its bytes (storage/FORMAT.md, "Pages").
+// A page of records and stars as its descriptor describes it: its numbers, taken out of its bytes
+// and checked (storage/FORMAT.md, "Pages").
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "storage/attributes.h"
+#include "storage/descriptor.h"
 #include "storage/page_columns.h"
+#include "storage/page_store.h"
 #include "storage/short_float.h"
 #include "storage/star.h"
 
 namespace ptin {
+
+class PageRun;
 
 /// How the corners of a ring are laid out.
 struct RingShape {
@@ -32,93 +39,67 @@ struct RingPlace {
 
 /// What the corners of a ring, and its triangles, span.
 struct RingSpan {
-  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Of the corners, grid units.
+  std::int64_t min_x = INT64_MAX, min_y = INT64_MAX;  ///< Box of the corners, grid units.
   std::int64_t max_x = INT64_MIN, max_y = INT64_MIN;
   std::uint32_t low = UINT32_MAX, high = 0;  ///< Ordered heights; low > high: no corner has one.
   std::uint32_t least_death = UINT32_MAX;    ///< As death_bits().
 };
 
-/// The numbers of a page. Any bytes are safe to ask: an answer of false means that a field cannot
-/// be what was written, and then what was asked for is unspecified.
+/// The height of u, and the ends of the record's interval, as ordered numbers without wrap-around.
+struct OrderedInterval {
+  std::uint64_t height, low, high;
+};
+
+/// A page. Any bytes are safe to ask: an answer of false means that a field cannot be what was
+/// written, and then what was asked for is unspecified.
 class RecordPage {
  public:
-  /// @param bytes  Borrowed, of a whole page.
-  RecordPage(std::span<const std::byte> bytes, const HeightEncoding& heights) noexcept;
+  /// @param path   Borrowed, as the bytes; for messages.
+  /// @param bytes  Bytes of a whole page.
+  /// @throws Error corruption  the descriptor or the page's header cannot be what was written, or
+  ///                           they disagree on the number of records
+  RecordPage(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
+             const HeightEncoding& heights, std::span<const std::byte> bytes);
 
-  /// Whether the header of the page can be what was written. REQUIRED by all that follows.
-  [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
   [[nodiscard]] std::uint32_t records() const noexcept { return columns_.records(); }
+  [[nodiscard]] const layout::NodeEntry& descriptor() const noexcept { return descriptor_; }
+  [[nodiscard]] const HeightEncoding& heights() const noexcept { return heights_; }
   [[nodiscard]] const PageColumns& columns() const noexcept { return columns_; }
   [[nodiscard]] const std::byte* bytes() const noexcept { return bytes_.data(); }
 
-  /// The roi of a record. Nothing is checked. REQUIRES, as all that follows: i < records().
-  [[nodiscard]] GridBox roi(std::size_t i) const noexcept;
-  /// The bits of a short number (storage/short_float.h), or more than those of infinity.
-  [[nodiscard]] std::uint32_t error_bits(std::size_t i) const noexcept {
-    return short_of_stored(number(PageColumn::kError, i), columns_.header().error);
-  }
-  /// Most records of a run.
-  static constexpr std::uint32_t kRun = 64;
-  /// The numbers of records one behind the other, taken out of the page column by column: a number
-  /// takes a load and a shift for some of them then, and nothing is looked up between.
-  struct RecordRun {
-    std::uint32_t first = 0, count = 0;
-    std::array<std::array<std::uint64_t, kRun>, kPageColumns> numbers;
-  };
-  /// Takes so many records from `first` on. REQUIRES: count <= kRun, first + count <= records().
-  void read_run(std::uint32_t first, std::uint32_t count, RecordRun& run) const noexcept;
-  /// The attributes of record `first` + k of a run. Nothing is checked: of a record that is not sound
-  /// they may be anything. REQUIRES, as below: k < run.count.
-  [[nodiscard]] Attributes attributes(const RecordRun& run, std::uint32_t k) const noexcept;
-  /// The same as split() of record `first` + k.
-  [[nodiscard]] bool split(const RecordRun& run, std::uint32_t k, RingPlace& place,
+  /// Appends all records to `out`. On an error `out` is as before.
+  /// @throws Error corruption  a field cannot be what was written, or lies outside of what the
+  ///                           descriptor says
+  void decode(std::vector<VertexSplit>& out) const;
+  /// The same, with the stars.
+  void decode(StarredRecords& out) const;
+  /// Appends the records for which the predicate is true. They are checked as by decode(); of the
+  /// other records nothing but the attributes is looked at.
+  /// @throws Error as decode()
+  void decode_matching(const AttributePredicate& predicate, std::vector<VertexSplit>& out) const;
+
+  /// Everything of a record but w, vl, vr and what follows from its ring. Coordinates are on the
+  /// grid, and the roi holds u. REQUIRES: all columns of the run are taken, as for what follows.
+  [[nodiscard]] bool head(const PageRun& run, std::uint32_t k, VertexSplit& r) const noexcept;
+  /// A record. u, w, vl and vr differ and lie in the roi.
+  /// @param place  Place of a record not behind this one; becomes that of this record.
+  [[nodiscard]] bool split(const PageRun& run, std::uint32_t k, RingPlace& place,
                            VertexSplit& r) const noexcept;
-  /// Which of so many records may have a star that a filter asks for, as far as box, level and
-  /// heights tell: bit k for record `first` + k. Nothing is checked. REQUIRES: as read_run().
-  /// @param is_within  All stars of the page lie in the filter's box.
-  [[nodiscard]] std::uint64_t near_stars(std::uint32_t first, std::uint32_t count,
-                                         const StarFilter& filter, bool is_within) const noexcept;
-  /// Everything of a record but w, vl, vr and what follows from its ring.
-  [[nodiscard]] bool head(std::size_t i, VertexSplit& r) const noexcept;
-  /// A record. Coordinates are on the grid, u, w, vl and vr differ and lie in the roi.
-  /// @param place  Of a record not behind this one; becomes that of this record.
-  [[nodiscard]] bool split(std::size_t i, RingPlace& place, VertexSplit& r) const noexcept;
-  /// Whether a triangle of the star of a record lives at a level, as level_bits(). True also for
-  /// a ring that is not sound. REQUIRES: error_bits(i) is at or above the level.
-  [[nodiscard]] bool may_live(std::size_t i, RingPlace& place, std::int32_t level) const noexcept;
   /// Appends the ring of a record whose head is `r`: is_star() is true of it.
   /// @param span  Becomes what the ring spans.
-  [[nodiscard]] bool ring(std::size_t i, RingPlace& place, const VertexSplit& r,
-                          std::vector<RingCorner>& out, RingSpan& span) const;
+  [[nodiscard]] bool ring(const PageRun& run, std::uint32_t k, RingPlace& place,
+                          const VertexSplit& r, std::vector<RingCorner>& out, RingSpan& span) const;
+
+  /// @throws Error corruption  always: `record` is not sound
+  [[noreturn]] void report(std::size_t record) const;
 
  private:
-  using Run = std::array<std::uint64_t, kRun>;
-  /// The fields of a corner.
-  struct StoredCorner {
-    std::int64_t x, y, height;
-    std::uint32_t death;
-    bool is_void, has_height;
-  };
-  [[nodiscard]] std::uint64_t number(PageColumn column, std::size_t i) const noexcept {
-    return columns_.at(bytes_.data(), column, i);
-  }
-  void read_run(PageColumn column, std::uint32_t first, std::uint32_t count,
-                Run& out) const noexcept {
-    columns_.read_run(bytes_.data(), column, first, std::span(out).first(count));
-  }
-  [[nodiscard]] std::uint64_t near_box(std::uint32_t first, std::uint32_t count,
-                                       const GridBox& box) const noexcept;
-  [[nodiscard]] std::uint64_t with_heights(std::uint32_t first, std::uint32_t count,
-                                           const StarFilter& filter) const noexcept;
-  [[nodiscard]] std::uint64_t with_steps(std::uint32_t first, std::uint32_t count,
-                                         std::span<const std::uint64_t> steps) const noexcept;
-  template <class NumberOf>
-  [[nodiscard]] bool head_of(const NumberOf& at, VertexSplit& r) const noexcept;
-  template <class NumberOf>
-  [[nodiscard]] RingShape shape_of(const NumberOf& at) const noexcept;
-  template <class ShapeOf>
-  [[nodiscard]] bool find(std::size_t i, RingPlace& place, const ShapeOf& shape) const noexcept;
-  [[nodiscard]] bool find(std::size_t i, RingPlace& place) const noexcept;
+  /// Whether the descriptor admits a star.
+  [[nodiscard]] bool admits(const VertexSplit& r, const RingSpan& span) const noexcept;
+  template <class Bounds>
+  void decode_within(const Bounds& bounds, const AttributePredicate* predicate,
+                     std::vector<VertexSplit>& out) const;
+  [[nodiscard]] bool find(const PageRun& run, std::uint32_t k, RingPlace& place) const noexcept;
   [[nodiscard]] bool ends_of(const RingPlace& place, VertexSplit& r) const noexcept;
   [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
                                           std::size_t bit) const noexcept;
@@ -126,10 +107,114 @@ class RecordPage {
   template <class Visit>
   void for_each_corner(const RingPlace& place, const Visit& visit) const;
 
-  std::span<const std::byte> bytes_;
+  const std::string& path_;
+  PageId id_;
+  layout::NodeEntry descriptor_;
   HeightEncoding heights_;
+  std::span<const std::byte> bytes_;
   PageColumns columns_;
-  bool is_sound_ = false;
 };
+
+/// The numbers of some consecutive records of a page, taken out column by column: a number takes a
+/// load and a shift for some of them then, and nothing is looked up between. A column is taken once.
+class PageRun {
+ public:
+  /// Most records of a run. Runs begin where runs of rings begin.
+  static constexpr std::uint32_t kMost = 64;
+  static_assert(kMost % layout::kRingRun == 0);
+
+  /// @param page  Borrowed.
+  explicit PageRun(const RecordPage& page) noexcept : page_(page) {}
+
+  /// Goes to the next kMost records, or those that are left; false when there are none.
+  [[nodiscard]] bool next() noexcept {
+    first_ += count_;
+    count_ = std::min(kMost, page_.records() - first_);
+    taken_.fill(0);
+    return count_ > 0;
+  }
+  [[nodiscard]] std::uint32_t first() const noexcept { return first_; }
+  [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+
+  /// Takes a column out, and returns it.
+  const std::uint64_t* take(PageColumn column) noexcept {
+    take_some(column, all());
+    return numbers_[static_cast<std::size_t>(column)].data();
+  }
+  void take_all() noexcept {
+    for (std::size_t c = 0; c < kPageColumns; ++c) {
+      take(static_cast<PageColumn>(c));
+    }
+  }
+  /// Takes the numbers of some records out: of record k where bit k is set.
+  void take_some(PageColumn column, std::uint64_t records) noexcept {
+    const std::uint64_t missing = records & ~taken_[static_cast<std::size_t>(column)];
+    if (missing != 0) {
+      read(column, missing);
+    }
+  }
+
+  /// A number that was taken. REQUIRES, as below: k < count().
+  [[nodiscard]] std::uint64_t at(PageColumn column, std::uint32_t k) const noexcept {
+    return numbers_[static_cast<std::size_t>(column)][k];
+  }
+  /// The roi; anything for a record that is not sound.
+  /// REQUIRES: kX, kY and the four columns of its sides are taken.
+  [[nodiscard]] GridBox roi(std::uint32_t k) const noexcept {
+    const auto whole = [](std::uint64_t v) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
+    };
+    const std::uint64_t x = at(PageColumn::kX, k);
+    const std::uint64_t y = at(PageColumn::kY, k);
+    return {whole(x - at(PageColumn::kWest, k)), whole(y - at(PageColumn::kSouth, k)),
+            whole(x + at(PageColumn::kEast, k)), whole(y + at(PageColumn::kNorth, k))};
+  }
+  /// REQUIRES: kHeight, kBelow and kAbove are taken.
+  [[nodiscard]] OrderedInterval heights(std::uint32_t k) const noexcept {
+    const std::uint64_t height = at(PageColumn::kHeight, k);
+    return {height, height - at(PageColumn::kBelow, k), height + at(PageColumn::kAbove, k)};
+  }
+  /// Height codes; empty for a record that has none. REQUIRES: as heights(), and kFlags.
+  [[nodiscard]] Interval codes(std::uint32_t k) const noexcept {
+    if ((at(PageColumn::kFlags, k) & kPageNoHeights) != 0) {
+      return {};
+    }
+    const HeightEncoding& e = page_.heights();
+    const auto code = [&](std::uint64_t ordered) {
+      return e.code(height_of_ordered(static_cast<std::uint32_t>(ordered), e.type));
+    };
+    const OrderedInterval h = heights(k);
+    return {code(h.low), code(h.high)};
+  }
+  /// The bits of a short number (storage/short_float.h), or more than those of infinity.
+  [[nodiscard]] std::uint32_t error_bits(std::uint32_t k) const noexcept {
+    return short_of_stored(at(PageColumn::kError, k), page_.columns().header().error);
+  }
+  [[nodiscard]] std::uint32_t deviation_bits(std::uint32_t k) const noexcept {
+    return short_of_stored(at(PageColumn::kDeviation, k), page_.columns().header().deviation);
+  }
+  /// Nothing is checked: of a record that is not sound they may be anything.
+  /// REQUIRES: all columns are taken.
+  [[nodiscard]] Attributes attributes(std::uint32_t k) const noexcept {
+    const auto bound = [](std::uint32_t bits) {
+      return static_cast<double>(short_value(static_cast<ShortBits>(bits)));
+    };
+    return {roi(k), codes(k), bound(error_bits(k)), bound(deviation_bits(k))};
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t all() const noexcept { return ~std::uint64_t{0} >> (kMost - count_); }
+  void read(PageColumn column, std::uint64_t records) noexcept;
+
+  const RecordPage& page_;
+  std::uint32_t first_ = 0, count_ = 0;
+  std::array<std::uint64_t, kPageColumns> taken_;  // NOLINT: set by next(); bit k: of record k
+  std::array<std::array<std::uint64_t, kMost>, kPageColumns>
+      numbers_;  // NOLINT: written before read
+};
+
+/// @throws Error corruption  the descriptor of a page holds values that no program wrote
+void check_descriptor(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
+                      const HeightEncoding& heights, std::size_t page_bytes);
 
 }  // namespace ptin

@@ -25,7 +25,7 @@ struct SpatialIndexOptions {
 
 /// An R-tree over the boxes of the record pages in four dimensions (x, y, height codes, [0,
 /// error]), packed by sort-tile-recursive. A search asks the predicate of the boxes of nodes, with
-/// an infinite deviation, since deviation is no dimension of the tree. Of the pages in a leaf it
+/// an infinite deviation, since deviation is no dimension of the tree. For the pages in a leaf it
 /// asks the predicate of the descriptors, exactly. So the answers are those of the packed R-tree.
 ///
 /// The tree is built when it is not there, when it is of another store (its first page holds the

@@ -20,8 +20,8 @@ namespace ptin {
 /// The death of a triangle that no record replaces: it is one of the file's finest TIN.
 inline constexpr float kLivesOn = -std::numeric_limits<float>::infinity();
 
-/// A vertex l_i of the ring around u, and triangle (u, l_i, l_i+1). Of the last corner of an open
-/// ring there is no triangle: `death` is kLivesOn and kVoid is not set.
+/// A vertex l_i of the ring around u, and triangle (u, l_i, l_i+1). The last corner of an open
+/// ring has no triangle: `death` is kLivesOn and kVoid is not set.
 struct RingCorner {
   enum Flag : std::uint8_t {
     kVoid = 1,      ///< The triangle is void.
@@ -33,6 +33,8 @@ struct RingCorner {
   std::uint8_t flags = 0;
   std::array<std::uint8_t, 3>
       unused{};  ///< In the place of padding: builds write corners as they are.
+  [[nodiscard]] bool has_height() const noexcept { return (flags & kNoHeight) == 0; }
+  [[nodiscard]] bool is_void() const noexcept { return (flags & kVoid) != 0; }  ///< The triangle.
   friend bool operator==(const RingCorner&, const RingCorner&) = default;
 };
 
@@ -43,7 +45,7 @@ struct RingCorner {
 struct StarredRecords {
   std::vector<VertexSplit> splits;
   std::vector<RingCorner> corners;      ///< Ring after ring.
-  std::vector<std::uint32_t> ring_end;  ///< Of record i, in `corners`.
+  std::vector<std::uint32_t> ring_end;  ///< Ends of rings, in `corners`.
 
   [[nodiscard]] std::size_t size() const noexcept { return splits.size(); }
   [[nodiscard]] bool empty() const noexcept { return splits.empty(); }

@@ -15,8 +15,8 @@ namespace ptin {
 struct StoreFacts {
   AffineMap map;
   HeightEncoding heights;
-  GridBox bounds;           ///< Of the whole domain, grid units.
-  double min_height = 0.0;  ///< Of all samples, height's unit; min > max when all is void.
+  GridBox bounds;           ///< Box of the whole domain, grid units.
+  double min_height = 0.0;  ///< Least of all samples, height's unit; min > max when all is void.
   double max_height = 0.0;
   /// Error of the file's finest TIN against its source, in the height's unit: what --max-error left
   /// out, and the rounding of heights.

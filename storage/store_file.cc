@@ -2,12 +2,12 @@
 #include "storage/store_file.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <optional>
 #include <utility>
 
 #include "engine/error.h"
-#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/file/mapped_file.h"
 #include "storage/file/ranged_file.h"
@@ -15,6 +15,7 @@
 #include "storage/packed_rtree.h"
 #include "storage/page_stores.h"
 #include "storage/point_directory.h"
+#include "storage/record_page.h"
 #include "storage/store_front.h"
 
 namespace ptin {
@@ -54,30 +55,13 @@ class StoreFileImpl final : public StoreFile {
     return directory_.get();
   }
   [[nodiscard]] PageInfo page_info(PageId id) const override;
-  void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const override;
-  void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const override;
-  std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
-                           IoCounters& counters) const override;
-  std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
-                            IoCounters& counters) const override;
-  std::uint32_t read_stars(const DirectoryPage& page, const StarFilter& filter, StarredRecords& out,
-                           IoCounters& counters) const override;
-  std::uint32_t read_living(const DirectoryPage& page, const StarFilter& filter, LivingStars& out,
-                            IoCounters& counters) const override;
+  void look_at(PageId id, const Look& look, IoCounters& counters) const override;
+  void look_at(const DirectoryPage& page, const Look& look, IoCounters& counters) const override;
   void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept override;
-  std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
-                              std::vector<VertexSplit>& out, IoCounters& counters) const override;
 
  private:
-  template <class Read, class Undo>
-  std::uint32_t read_in_place(PageId id, IoCounters& counters, const Read& read,
-                              const Undo& undo) const;
-  template <class Read>
-  std::uint32_t read_named(const DirectoryPage& named, IoCounters& counters,
-                           const Read& read) const;
-  [[nodiscard]] DescribedPage described(PageId id) const;
-  [[nodiscard]] DescribedPage described(const DirectoryPage& named,
-                                        std::span<const std::byte> bytes) const;
+  [[nodiscard]] layout::NodeEntry descriptor_of(const DirectoryPage& named,
+                                                std::span<const std::byte> bytes) const;
 
   [[nodiscard]] IndexNodes::Root root() const {
     return {front_.index, front_.index_offset, front_.root_checksum};
@@ -153,13 +137,9 @@ std::vector<SectionInfo> StoreFileImpl::sections() const {
   return result;
 }
 
-DescribedPage StoreFileImpl::described(PageId id) const {
-  return {file_->path(), id, nodes_->descriptor(id), front_.facts.heights, front_.slots.page_bytes};
-}
-
 /// What the directory and the page itself say of it; of heights and deviations they say nothing.
-DescribedPage StoreFileImpl::described(const DirectoryPage& named,
-                                       std::span<const std::byte> bytes) const {
+layout::NodeEntry StoreFileImpl::descriptor_of(const DirectoryPage& named,
+                                               std::span<const std::byte> bytes) const {
   layout::PageHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
   const GridBox& bounds = front_.facts.bounds;
@@ -175,75 +155,50 @@ DescribedPage StoreFileImpl::described(const DirectoryPage& named,
   d.deviation_max = kShortInfinity;
   d.death_min = named.death_min;
   d.records = header.records;
-  return {file_->path(), named.id, d, front_.facts.heights, front_.slots.page_bytes};
+  return d;
 }
 
 StoreFile::PageInfo StoreFileImpl::page_info(PageId id) const {
-  const DescribedPage page = described(id);
+  const layout::NodeEntry d = nodes_->descriptor(id);
+  check_descriptor(file_->path(), id, d, front_.facts.heights, front_.slots.page_bytes);
   nodes_->require_undamaged();
-  const layout::NodeEntry& d = page.descriptor();
-  return {page.records(), attributes_of(d, front_.facts.heights), short_value(d.error_min),
+  return {d.records, attributes_of(d, front_.facts.heights), short_value(d.error_min),
           star_attributes_of(d, front_.facts.heights)};
 }
 
-void StoreFileImpl::read_records(PageId id, std::vector<VertexSplit>& out,
-                                 IoCounters& counters) const {
-  const DescribedPage page = described(id);
-  PageBuffer bytes;
-  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
-  page.decode(bytes.of(page), out);
-}
+/// Room for one page of any size, on the stack, untouched until it is used.
+class PageBuffer {
+ public:
+  PageBuffer() {}  // NOLINT: not zeroed on purpose
+  [[nodiscard]] std::span<std::byte> of(std::uint32_t page_bytes) noexcept {
+    return {bytes_.data(), page_bytes};
+  }
 
-void StoreFileImpl::read_starred(PageId id, StarredRecords& out, IoCounters& counters) const {
-  const DescribedPage page = described(id);
-  PageBuffer bytes;
-  pages_->read_described(id, page.descriptor(), bytes.of(page), counters);
-  page.decode(bytes.of(page), out);
-}
+ private:
+  alignas(64) std::array<std::byte, layout::kMaxPageBytes> bytes_;
+};
 
-/// Lets `read` look at a page where it lies. What it made is undone when the page turns out to be
-/// damaged, or to have been.
-template <class Read, class Undo>
-std::uint32_t StoreFileImpl::read_in_place(PageId id, IoCounters& counters, const Read& read,
-                                           const Undo& undo) const {
-  const DescribedPage page = described(id);
+void StoreFileImpl::look_at(PageId id, const Look& look, IoCounters& counters) const {
+  const layout::NodeEntry d = nodes_->descriptor(id);
   PageBuffer buffer;
   const std::span<const std::byte> bytes =
-      pages_->view_described(id, page.descriptor(), buffer.of(page), counters);
+      pages_->view_described(id, d, buffer.of(front_.slots.page_bytes), counters);
   try {
-    read(page, bytes);
+    look(RecordPage(file_->path(), id, d, front_.facts.heights, bytes));
     pages_->require_undamaged();
   } catch (const Error&) {
-    undo();
     pages_->require_undamaged();  // Lost bytes are the cause, where there are any.
     throw;
   }
-  return page.records();
 }
 
-template <class Read>
-std::uint32_t StoreFileImpl::read_named(const DirectoryPage& named, IoCounters& counters,
-                                        const Read& read) const {
+void StoreFileImpl::look_at(const DirectoryPage& named, const Look& look,
+                            IoCounters& counters) const {
   PageBuffer buffer;
   const std::span<std::byte> bytes = buffer.of(front_.slots.page_bytes);
   pages_->read_checked(named.id, named.checksum, bytes, counters);
-  const DescribedPage page = described(named, bytes);
-  read(page, bytes);
-  return page.records();
-}
-
-std::uint32_t StoreFileImpl::read_stars(const DirectoryPage& page, const StarFilter& filter,
-                                        StarredRecords& out, IoCounters& counters) const {
-  return read_named(page, counters, [&](const DescribedPage& p, std::span<const std::byte> bytes) {
-    p.decode_stars(bytes, filter, out);
-  });
-}
-
-std::uint32_t StoreFileImpl::read_living(const DirectoryPage& page, const StarFilter& filter,
-                                         LivingStars& out, IoCounters& counters) const {
-  return read_named(page, counters, [&](const DescribedPage& p, std::span<const std::byte> bytes) {
-    p.decode_living(bytes, filter, out);
-  });
+  look(RecordPage(file_->path(), named.id, descriptor_of(named, bytes), front_.facts.heights,
+                  bytes));
 }
 
 void StoreFileImpl::announce(std::span<const DirectoryPage> pages,
@@ -254,41 +209,38 @@ void StoreFileImpl::announce(std::span<const DirectoryPage> pages,
   }
 }
 
-std::uint32_t StoreFileImpl::read_matching(PageId id, const AttributePredicate& predicate,
-                                           std::vector<VertexSplit>& out,
-                                           IoCounters& counters) const {
+/// Lets `decode` append to `out` what a page holds, or nothing.
+template <class Records, class Decode>
+void append(const StoreFile& store, PageId id, Records& out, IoCounters& counters,
+            const Decode& decode) {
   const std::size_t before = out.size();
-  return read_in_place(
-      id, counters,
-      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
-        page.decode_matching(bytes, predicate, out);
-      },
-      [&] { out.resize(before); });
-}
-
-std::uint32_t StoreFileImpl::read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
-                                        IoCounters& counters) const {
-  const std::size_t before = out.size();
-  return read_in_place(
-      id, counters,
-      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
-        page.decode_stars(bytes, filter, out);
-      },
-      [&] { out.resize(before); });
-}
-
-std::uint32_t StoreFileImpl::read_living(PageId id, const StarFilter& filter, LivingStars& out,
-                                         IoCounters& counters) const {
-  const std::size_t before = out.stars.size();
-  return read_in_place(
-      id, counters,
-      [&](const DescribedPage& page, std::span<const std::byte> bytes) {
-        page.decode_living(bytes, filter, out);
-      },
-      [&] { out.keep(before); });
+  try {
+    store.look_at(id, decode, counters);
+  } catch (const Error&) {
+    out.resize(before);
+    throw;
+  }
 }
 
 }  // namespace
+
+void StoreFile::read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const {
+  append(*this, id, out, counters, [&](const RecordPage& page) { page.decode(out); });
+}
+
+void StoreFile::read_starred(PageId id, StarredRecords& out, IoCounters& counters) const {
+  append(*this, id, out, counters, [&](const RecordPage& page) { page.decode(out); });
+}
+
+std::uint32_t StoreFile::read_matching(PageId id, const AttributePredicate& predicate,
+                                       std::vector<VertexSplit>& out, IoCounters& counters) const {
+  std::uint32_t examined = 0;
+  append(*this, id, out, counters, [&](const RecordPage& page) {
+    examined = page.records();
+    page.decode_matching(predicate, out);
+  });
+  return examined;
+}
 
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,
                                                  std::shared_ptr<Announcer> announcer,
@@ -299,8 +251,8 @@ std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAc
 
 std::shared_ptr<const StoreFile> StoreFile::open(std::shared_ptr<RangeSource> source,
                                                  const RemoteCaches& caches) {
-  return std::make_shared<const StoreFileImpl>(std::make_unique<RangedFile>(
-      std::move(source), RangedFileOptions{caches.memory_bytes, caches.folder}));
+  return std::make_shared<const StoreFileImpl>(
+      std::make_unique<RangedFile>(std::move(source), caches));
 }
 
 }  // namespace ptin

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,7 +18,6 @@
 #include "storage/file/range_source.h"
 #include "storage/file/replaced_file.h"
 #include "storage/index.h"
-#include "storage/living_stars.h"
 #include "storage/page_store.h"
 #include "storage/star.h"
 #include "storage/store_facts.h"
@@ -26,6 +26,7 @@ namespace ptin {
 
 class PackedRTree;
 class PointDirectory;
+class RecordPage;
 struct DirectoryPage;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
@@ -46,16 +47,6 @@ struct SectionInfo {
 
 enum class PageAccess { kMapped, kPread };
 
-/// What is kept of a file that lies elsewhere.
-struct RemoteCaches {
-  /// In memory: the parts used last, at least 1 MiB of them. A round of reading takes up to 6 MiB
-  /// besides.
-  std::uint64_t memory_bytes = std::uint64_t{64} << 20;
-  /// A folder in which what was read is kept for the next opening too; empty: none. A file in it has
-  /// the name of the content, and so is never out of date.
-  std::string folder;
-};
-
 /// An open store. Immutable; shared by any number of queries and threads.
 class StoreFile {
  public:
@@ -63,7 +54,7 @@ class StoreFile {
   /// checksums of header, tables, metadata and T0. Index nodes and record pages are verified when
   /// they are first visited, or by verify(). Cost: a few reads at the front of the file; O(|T0|),
   /// whatever the number of records.
-  /// @param announcer  Is told what is read next; null: the kernel is. The store shares it.
+  /// @param announcer  Hears what is read next; null: the kernel does. The store shares it.
   /// @throws Error not_found, io_error, corruption, unsupported_version; invalid_argument when it
   ///               is no regular file, a stream, or begins like no store at all
   static std::shared_ptr<const StoreFile> open(const std::string& path,
@@ -113,49 +104,31 @@ class StoreFile {
   /// @throws Error corruption
   [[nodiscard]] virtual PageInfo page_info(PageId id) const = 0;
 
-  /// Reads a page and decodes its records, appending to `out`. Checks each record against the
-  /// page's descriptor.
-  /// @throws Error corruption, io_error
-  virtual void read_records(PageId id, std::vector<VertexSplit>& out,
-                            IoCounters& counters) const = 0;
+  /// What looks at a page (storage/record_page.h), which is there for the call.
+  using Look = std::function<void(const RecordPage&)>;
+  /// Lets `look` look at a page where it lies. What it made of the page is worth nothing after an
+  /// error: the file may lose bytes while they are looked at.
+  /// @throws Error corruption, io_error; what `look` throws
+  virtual void look_at(PageId id, const Look& look, IoCounters& counters) const = 0;
+  /// The same of a page that the directory named, without its descriptor: stars are held against the
+  /// bounds of the terrain, the page's largest error and its least death.
+  virtual void look_at(const DirectoryPage& page, const Look& look, IoCounters& counters) const = 0;
 
+  /// Decodes the records of a page, appending to `out`, each checked against the page's descriptor.
+  /// On an error `out` is as before.
+  /// @throws Error corruption, io_error
+  void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const;
   /// As read_records(), with the stars.
-  virtual void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const = 0;
-
-  /// Appends the stars of a page that may hold what the filter asks for, each checked against the
-  /// page's descriptor. Of the records it sets everything but w, vl, vr, and the classes of the two
-  /// triangles that are made. Returns the number of records examined: all records of the page.
-  /// @throws Error corruption, io_error
-  virtual std::uint32_t read_stars(PageId id, const StarFilter& filter, StarredRecords& out,
-                                   IoCounters& counters) const = 0;
-
-  /// Appends what lives of the stars of a page at the filter's level, where a triangle's box meets
-  /// the filter's: each star and triangle is checked against the page's descriptor. Whether a whole
-  /// ring is one is not (is_star()). Returns the number of records examined: all records of the
+  void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const;
+  /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
+  /// are not decoded, and not checked. Returns the number of records examined: all records of the
   /// page.
-  /// REQUIRES: !filter.with_ties
-  /// @throws Error corruption, io_error
-  virtual std::uint32_t read_living(PageId id, const StarFilter& filter, LivingStars& out,
-                                    IoCounters& counters) const = 0;
-
-  /// As read_stars() and read_living(), of pages that the directory named, without their descriptor:
-  /// a star is held against the bounds of the terrain, the page's largest error and its least death.
-  virtual std::uint32_t read_stars(const DirectoryPage& page, const StarFilter& filter,
-                                   StarredRecords& out, IoCounters& counters) const = 0;
-  virtual std::uint32_t read_living(const DirectoryPage& page, const StarFilter& filter,
-                                    LivingStars& out, IoCounters& counters) const = 0;
+  std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
+                              std::vector<VertexSplit>& out, IoCounters& counters) const;
 
   /// Announces pages that the directory named: each alone, since few are wanted of many.
   virtual void announce(std::span<const DirectoryPage> pages,
                         IoCounters& counters) const noexcept = 0;
-
-  /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
-  /// are not decoded, and not checked. Returns the number of records examined: all records of the
-  /// page.
-  /// @throws Error corruption, io_error
-  virtual std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
-                                      std::vector<VertexSplit>& out,
-                                      IoCounters& counters) const = 0;
 
  protected:
   StoreFile() = default;

@@ -249,7 +249,7 @@ void place_index_and_pages(StoreFront& front, const std::string& path) {
   front.slots = {h.page_count, h.first_page, pages.offset, h.page_bytes};
 }
 
-/// Of the directory nothing is read at the opening.
+/// Where the directory lies. Nothing of it is read at the opening.
 std::optional<DirectoryPlace> place_of_directory(const StoreFront& front, const std::string& path) {
   const SectionEntry* const root = find_any(front.sections, SectionKind::kDirectory, path);
   const SectionEntry* const nodes = find_any(front.sections, SectionKind::kDirectoryNodes, path);

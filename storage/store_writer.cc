@@ -15,7 +15,6 @@
 
 #include "engine/check.h"
 #include "engine/error.h"
-#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/directory_writer.h"
 #include "storage/error_table.h"
@@ -25,6 +24,8 @@
 #include "storage/file/file_questions.h"
 #include "storage/index_writer.h"
 #include "storage/layout.h"
+#include "storage/page_columns.h"
+#include "storage/page_journal.h"
 #include "storage/page_slots.h"
 #include "storage/short_float.h"
 #include "storage/store_front.h"
@@ -161,8 +162,7 @@ class StoreWriterImpl final : public StoreWriter {
   [[nodiscard]] StoreCheckpoint position() const override;
   void sync() override;
   void add_segment(const PackedSegment& segment, const HeightEncoding& heights) override;
-  void add_placed(std::span<const layout::NodeEntry> descriptors, const PageCounts& counts,
-                  const HeightEncoding& heights) override;
+  void add_placed(const PackedSegment& segment, const HeightEncoding& heights) override;
   void publish(const StoreFacts& facts, const CoarsestTin& t0,
                const std::string& metadata_json) override;
 
@@ -171,7 +171,7 @@ class StoreWriterImpl final : public StoreWriter {
     return ScratchFile(files, path, ScratchFile::kept_at(path));
   }
   void start(const HeightEncoding& heights);
-  void add(const PageCounts& counts);
+  void count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank);
   void restore_moved_pages();
   void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
   PageSlots move_pages_behind(std::uint64_t front_bytes);
@@ -186,7 +186,6 @@ class StoreWriterImpl final : public StoreWriter {
   std::optional<IndexWriter> index_;
   ErrorTable errors_;
   std::uint64_t written_bytes_ = 0;  // pages lie at the start of the file until publish()
-  std::uint64_t records_ = 0;
   std::uint16_t max_rank_ = 0;
   bool published_ = false;
 };
@@ -205,38 +204,42 @@ void StoreWriterImpl::start(const HeightEncoding& heights) {
 void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEncoding& heights) {
   PTIN_CHECK(!published_ &&
              segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
+  std::uint64_t records = 0;
+  for (std::size_t i = 0; i < segment.descriptors.size(); ++i) {
+    const auto page =
+        std::span(segment.pages).subspan(i * options_.page_bytes, options_.page_bytes);
+    PTIN_CHECK(checksum_of(page) == segment.descriptors[i].checksum);
+    records += segment.descriptors[i].records;
+  }
+  PTIN_CHECK(records == records_in(segment.errors));
   start(heights);
-  const std::optional<PageCounts> counts = count_pages(segment.pages, segment.descriptors, heights);
-  PTIN_CHECK(counts.has_value());
   file_.write_at(segment.pages, written_bytes_);
-  add_placed(segment.descriptors, *counts, heights);
+  add_placed(segment, heights);
 }
 
-void StoreWriterImpl::add_placed(std::span<const layout::NodeEntry> descriptors,
-                                 const PageCounts& counts, const HeightEncoding& heights) {
+void StoreWriterImpl::add_placed(const PackedSegment& segment, const HeightEncoding& heights) {
   PTIN_CHECK(!published_);
   start(heights);
-  for (const layout::NodeEntry& entry : descriptors) {
+  for (const layout::NodeEntry& entry : segment.descriptors) {
     index_->add(entry);
     if (journal_) {
       journal_->add(entry);
     }
   }
-  add(counts);
-  written_bytes_ += descriptors.size() * options_.page_bytes;
+  count(segment.errors, segment.max_rank);
+  written_bytes_ += segment.descriptors.size() * options_.page_bytes;
 }
 
-void StoreWriterImpl::add(const PageCounts& counts) {
-  records_ += counts.records;
-  max_rank_ = std::max(max_rank_, counts.max_rank);
-  for (const ErrorBin& bin : counts.bins) {
+void StoreWriterImpl::count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank) {
+  max_rank_ = std::max(max_rank_, max_rank);
+  for (const ErrorBin& bin : errors) {
     errors_.add(bin);
   }
 }
 
 StoreCheckpoint StoreWriterImpl::position() const {
   PTIN_CHECK(journal_.has_value());
-  return journal_->end();
+  return {journal_->pages(), journal_->chain(), errors_.bins(), max_rank_};
 }
 
 void StoreWriterImpl::sync() {
@@ -261,29 +264,27 @@ void StoreWriterImpl::restore_moved_pages() {
   file_.sync();
 }
 
-// Reads the next page again, checks it, and counts it as add_segment() did.
+// Reads the next page again, and checks it.
 void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
   file_.read_at(page, written_bytes_);
-  const std::optional<PageCounts> counts = checksum_of(page) == entry.checksum
-                                               ? count_pages(page, std::span(&entry, 1), *heights_)
-                                               : std::nullopt;
-  if (!counts) {
+  if (checksum_of(page) != entry.checksum) {
     throw Error(ErrorCode::corruption,
                 "page " + std::to_string(written_bytes_ / options_.page_bytes) +
                     " of the unfinished build is damaged",
                 path_);
   }
   index_->add(entry);
-  add(*counts);
   written_bytes_ += page.size();
 }
 
 void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) {
-  PTIN_CHECK(journal_.has_value() && records_ == 0);
+  PTIN_CHECK(journal_.has_value() && written_bytes_ == 0);
   start(heights);
   restore_moved_pages();
   std::vector<std::byte> page(options_.page_bytes);
-  journal_->replay(checkpoint, [&](const layout::NodeEntry& entry) { take_back(entry, page); });
+  journal_->replay(checkpoint.pages, checkpoint.chain,
+                   [&](const layout::NodeEntry& entry) { take_back(entry, page); });
+  count(checkpoint.errors, checkpoint.max_rank);
   // The journal is synced before the pages are cut. Otherwise a power cut could bring back a mark
   // of publishing that speaks of copies which were cut off.
   journal_->sync();
@@ -362,7 +363,7 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   header.page_bytes = options_.page_bytes;
   header.page_count = slots.pages;
   header.first_page = slots.first_page;
-  header.record_count = records_;
+  header.record_count = records_in(errors_.bins());
   header.max_rank = max_rank_;
   put_facts(facts, header);
   file_.write_at(front.finish(header, index_offset), 0);

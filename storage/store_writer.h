@@ -6,11 +6,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
+#include <vector>
 
 #include "storage/packed_segment.h"
-#include "storage/page_journal.h"
 #include "storage/store_file.h"
 
 namespace ptin {
@@ -27,8 +26,8 @@ struct DirectoryOptions {
   /// So that the directory stays below 48 KiB, and with all else that comes at the opening of a file
   /// that lies elsewhere below 64 KiB.
   std::uint32_t most_cells = 4900;
-  /// The nodes take at most one byte for so many of the pages. Where they would take more there are
-  /// fewer cells, and at last none: the stars of most pages reach far.
+  /// Budget: one byte of nodes for so many bytes of pages. Above it there are fewer cells; if even
+  /// one does not fit, since the stars of most pages reach far, there is no directory.
   std::uint64_t page_bytes_of_byte = 200;
 };
 
@@ -45,6 +44,14 @@ struct StoreWriterOptions {
   /// behind.
   std::string work_folder = {};
   DirectoryOptions directory = {};
+};
+
+/// How much of an unfinished store is in its place, and what is counted of it.
+struct StoreCheckpoint {
+  std::uint64_t pages = 0;
+  std::uint64_t chain = 0;       ///< PageJournal::chain() of these pages.
+  std::vector<ErrorBin> errors;  ///< As PackedSegment::errors, of all of them.
+  std::uint16_t max_rank = 0;
 };
 
 /// The file in a work folder that holds the pages, one behind the other from its beginning.
@@ -85,17 +92,15 @@ class StoreWriter {
 
   /// Appends one segment, packed for pages of StoreWriterOptions::page_bytes.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
-  ///               heights than before), internal (pages that no reader would accept)
+  ///               heights than before), internal (pages that are not those of the descriptors)
   virtual void add_segment(const PackedSegment& segment, const HeightEncoding& heights) = 0;
 
-  /// Appends pages that somebody has put into pages_file_in() of the work folder already, behind all
-  /// that were added before: by another thread, or another process.
-  /// REQUIRES: a work folder; the descriptors are those of the pages, and count_pages() gave the
-  /// counts.
+  /// Appends a segment whose pages somebody has put into pages_file_in() of the work folder already,
+  /// behind all that were added before: another thread, or another process. `segment.pages` is not
+  /// looked at.  REQUIRES: a work folder.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
   ///               heights than before)
-  virtual void add_placed(std::span<const layout::NodeEntry> descriptors, const PageCounts& counts,
-                          const HeightEncoding& heights) = 0;
+  virtual void add_placed(const PackedSegment& segment, const HeightEncoding& heights) = 0;
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
   /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file

@@ -17,7 +17,7 @@ namespace ptin {
 ///   for (p = 0; p < passes(); ++p) { begin(p); add(...); ...; end(); }
 ///
 /// Where one bit for each position of the bounds fits the memory, there is one pass and a bit for
-/// each position. Otherwise each pass keeps one part of the keys, told by a hash, and sorts it;
+/// each position. Otherwise each pass keeps one part of the keys, chosen by a hash, and sorts it;
 /// there are as many passes as that takes.
 class UniqueKeys {
  public:

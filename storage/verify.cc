@@ -12,13 +12,13 @@
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/interval.h"
 #include "engine/stop.h"
-#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/directory_cells.h"
 #include "storage/error_table.h"
 #include "storage/file/checksum.h"
 #include "storage/file/read_only_file.h"
 #include "storage/page_packer.h"
+#include "storage/record_page.h"
 #include "storage/store_front.h"
 #include "storage/unique_keys.h"
 #include "storage/verify_t0.h"
@@ -330,8 +330,7 @@ std::optional<layout::NodeEntry> Verifier::look_at_page(PageId id,
 bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
   records_.clear();
   try {
-    const DescribedPage page(file_.path(), id, descriptor, front_.facts.heights,
-                             front_.facts.page_bytes);
+    check_descriptor(file_.path(), id, descriptor, front_.facts.heights, front_.facts.page_bytes);
     file_.read_at(page_, front_.slots.offset_of(id));
     if (checksum_of(page_) != descriptor.checksum) {
       if (pass_ == 0) {
@@ -339,7 +338,7 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
       }
       return false;
     }
-    page.decode(page_, records_);
+    RecordPage(file_.path(), id, descriptor, front_.facts.heights, page_).decode(records_);
     if (pass_ == 0 && !is_packed_so()) {
       report("the page does not hold its records as they are to be packed", page_name(id));
     }
@@ -382,7 +381,7 @@ void Verifier::count(PageId id) {
     errors_.add(r);
     makes_void_ = makes_void_ || (r.flags & VertexSplit::kAnyVoid) != 0;
     max_rank_ = std::max<std::uint32_t>(max_rank_, r.rank);
-    if ((r.flags & VertexSplit::kVertexVoid) == 0) {
+    if (r.has_height()) {
       count_height(r.height);
     }
     if (!has_heights_of_header(r)) {

@@ -52,7 +52,7 @@ using VerifyProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 /// - all vertices with each other: no vertex comes twice.
 ///
 /// Bytes, never triangles: whether each split finds its fan, and each record is contained in those
-/// that it needs, check_hierarchy() tells (engine/query/refine/hierarchy_check.h).
+/// that it needs, check_hierarchy() finds out (engine/query/refine/hierarchy_check.h).
 ///
 /// Vertex keys are compared exactly: by one bit for each position of the bounds where that fits the
 /// memory, otherwise by sorting, one part of the keys in each pass over the pages.

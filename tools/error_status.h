@@ -14,7 +14,7 @@ inline constexpr int kExitDone = 0;
 /// answered.
 inline constexpr int kExitNegative = 1;
 
-/// Exit status and HTTP status of an error code. Of a service the file that is missing, damaged or
+/// Exit status and HTTP status of an error code. In a service the file that is missing, damaged or
 /// unreadable is its own, and what takes too much memory is the question.
 struct ErrorStatus {
   int exit;
@@ -25,8 +25,9 @@ struct ErrorStatus {
 [[nodiscard]] ErrorStatus status_of(ErrorCode code) noexcept;
 
 /// What to report for the exception being handled: an Error as it is, std::bad_alloc as
-/// resource_exhausted, everything else as internal. What was told when memory_was_refused(), and
-/// blames a file or the program, is resource_exhausted too. REQUIRES: called inside a catch block.
+/// resource_exhausted, everything else as internal. What was reported when memory_was_refused(),
+/// and blames a file or the program, is resource_exhausted too. REQUIRES: called inside a catch
+/// block.
 /// @throws std::bad_alloc
 [[nodiscard]] Error current_error();
 

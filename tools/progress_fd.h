@@ -14,7 +14,7 @@ struct ProgressFacts {
   std::uint64_t memory = 0;  ///< Bytes of anonymous memory.
   std::uint64_t tiles_done = 0, tiles = 0;
   std::uint64_t per_second = 0;     ///< Units of `done`.
-  double remaining_seconds = -1.0;  ///< Of this stage; < 0 when it is not known.
+  double remaining_seconds = -1.0;  ///< Seconds left of this stage; < 0 when unknown.
 };
 
 /// Writes `{"stage", "done", "total", "seconds", "memory", "tiles_done", "tiles", "per_second",

@@ -27,7 +27,7 @@ void tell_refused_memory_as_json(bool as_json) noexcept;
 void require_memory_given(const std::string& path);
 
 /// True when operator new was refused memory since prepare_for_refused_memory(). Libraries that
-/// catch that tell of something else: a feature that is too big, a file that cannot be opened.
+/// catch that speak of something else: a feature that is too big, a file that cannot be opened.
 [[nodiscard]] bool memory_was_refused() noexcept;
 
 /// The one sentence.

@@ -14,6 +14,15 @@ double rise_of(const Slope& slope) noexcept { return std::hypot(slope.east, slop
 
 }  // namespace
 
+Slope slope_of(const GridNormal& normal, const StoreFacts& facts, MapPoint per_map_unit) noexcept {
+  const double east = facts.map.step_x * per_map_unit.x;
+  const double north = facts.map.step_y * per_map_unit.y;
+  const auto rise = [&](double part, double run) {
+    return run > 0 ? -part / normal.z * facts.heights.step / run : 0.0;
+  };
+  return {rise(normal.x, east), rise(normal.y, north)};
+}
+
 double degrees_of(const Slope& slope) noexcept { return std::atan(rise_of(slope)) / kDegree; }
 
 double percent_of(const Slope& slope) noexcept { return 100 * rise_of(slope); }

@@ -6,6 +6,8 @@
 
 #include <optional>
 
+#include "engine/query/questions.h"
+
 namespace ptin::tools {
 
 /// The rise of a surface over ground, height and ground in one unit.
@@ -13,6 +15,13 @@ struct Slope {
   double east = 0.0;
   double north = 0.0;
 };
+
+/// The slope of a surface with this normal.
+/// @param per_map_unit  Ground::per_map_unit at the place. At a pole, where east is no direction,
+///                      nothing rises to the east.
+/// REQUIRES: normal.z > 0.
+[[nodiscard]] Slope slope_of(const GridNormal& normal, const StoreFacts& facts,
+                             MapPoint per_map_unit) noexcept;
 
 /// The angle to the horizontal, in degrees from 0 to 90.
 [[nodiscard]] double degrees_of(const Slope& slope) noexcept;

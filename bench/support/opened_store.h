@@ -7,8 +7,10 @@
 
 #include <benchmark/benchmark.h>
 
+#include "bench/support/counters.h"
+#include "bench/support/places.h"
 #include "bench/support/scratch.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::bench {
 
@@ -25,6 +27,9 @@ inline const Terrain* terrain() {
   static const Terrain opened(store());
   return &opened;
 }
+
+/// The facts of store(). REQUIRES: there is one.
+inline const StoreFacts& facts() { return store()->facts(); }
 
 /// True when there is no store to ask; the results of the benchmark then say what it needs.
 inline bool skipped(benchmark::State& state) {

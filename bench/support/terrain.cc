@@ -136,10 +136,10 @@ MadeTerrain made_raster(std::int32_t side, Relief relief) {
   std::vector<std::uint8_t> valid(heights.size(), 1);
   Tile& tile = terrain.started.tile;
   tile.units = measure_units(terrain.frame, kVoidSlope);
-  tile.tin = make_raster_tin(heights, valid, side, side, encoding, {0, 0});
+  tile.tin = make_raster_tin(heights, valid, {0, 0, side, side}, encoding);
   start_tile(tile, nullptr);
-  terrain.started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid), side,
-                                                         side, encoding, GridPoint{0, 0});
+  terrain.started.full = std::make_unique<RasterSurface>(std::move(heights), std::move(valid),
+                                                         SampleRange{0, 0, side, side}, encoding);
   return terrain;
 }
 

@@ -42,7 +42,7 @@ void build_raster(Job& job) {
   if (job.resources.dry_run) {
     return;
   }
-  // Of a source that is no file, this much at least can be compared.
+  // The size and the number of samples can be compared even where the source is no file.
   began_with["size"] = {source.width(), source.height(), tiles.tree.side()};
   began_with["samples"] = source.valid_samples();
   in_workspace(job, began_with, [&](Workspace& workspace) {

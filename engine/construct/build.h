@@ -31,17 +31,18 @@ struct BuildResources {
   Unfinished unfinished = Unfinished::kRefuse;          ///< What to do with an interrupted build.
   bool dry_run = false;                                 ///< Stop when the plan is made.
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
-  /// How long a worker of another machine waits for a file that it was told of and does not see yet:
-  /// what network file systems remember of a folder may be old (BuildWorker, do_part()).
+  /// How long a worker of another machine waits for a file that was named to it and that it does
+  /// not see yet: what network file systems remember of a folder may be old (BuildWorker,
+  /// do_part()).
   std::chrono::milliseconds patience{0};
   TaskDriver* driver = nullptr;  ///< Who has the tasks done; borrowed; null: threads.
   FileLayer* files = nullptr;    ///< Through which to write; null means the system. For tests.
   std::stop_token stop;
-  BuildObserver* observer = nullptr;  ///< Who is told of the work; null: nobody. Borrowed.
+  BuildObserver* observer = nullptr;  ///< Hears of the work; null: nobody does. Borrowed.
 };
 
 /// A build that is resumed though its output was complete has no counts of points and TINs but
-/// those that the file tells.
+/// those that the file states.
 struct BuildReport {
   std::uint64_t source_samples = 0;  ///< With a height; of points and TINs, distinct positions.
   std::uint64_t void_samples = 0;    ///< Rasters: without a height.
@@ -61,7 +62,7 @@ struct BuildReport {
   std::uint64_t t0_vertices = 0;
   std::uint16_t max_rank = 0;  ///< Chains of splits are at most one longer.
   std::uint64_t file_bytes = 0;
-  std::uint64_t source_bytes = 0;  ///< Of all files of all inputs; 0 where nothing tells them.
+  std::uint64_t source_bytes = 0;  ///< Bytes of all files of all inputs; 0 where unknown.
   double seconds = 0.0;
   bool resumed = false;  ///< An interrupted build was taken up.
   /// Why temporary files could not be removed after the output was complete; "" when they were.

@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 
 #include "engine/construct/build_option_table.h"
-#include "engine/construct/delaunay/point_tile.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/points/point_portions.h"
@@ -25,7 +24,7 @@ namespace ptin::build_internal {
 namespace {
 
 /// Of the temporary files: to be raised when their bytes mean something else.
-constexpr int kTemporaryFormat = 9;
+constexpr int kTemporaryFormat = 10;
 
 /// The key of a line of the manifest: the sorted source that an earlier line names is damaged.
 constexpr const char* kIsForgotten = "source_is_damaged";
@@ -86,7 +85,8 @@ Error with_advice(const Error& error, const std::string& folder, const char* adv
           error.context()};
 }
 
-/// The error, told with the work that is kept. This stays of use where a sorted source is damaged.
+/// The error, with the work that is kept added to its text. This stays of use where a sorted source
+/// is damaged.
 Error error_with_work(Workspace& workspace, const Job& job, const Error& error) {
   if (!is_lost_sorted_source(error, workspace.temporary_folder())) {
     const bool is_over = job.inputs_changed || (error.code() == ErrorCode::corruption &&
@@ -185,16 +185,6 @@ void Job::tell(const StageProgress& progress) const {
   }
 }
 
-std::function<void(std::uint64_t, std::uint64_t)> Job::stage(const char* name) const {
-  return [this, name](std::uint64_t done, std::uint64_t total) { tell({name, done, total, 0, 0}); };
-}
-
-std::function<void(const char*, std::uint64_t, std::uint64_t)> Job::stages() const {
-  return [this](const char* name, std::uint64_t done, std::uint64_t total) {
-    tell({name, done, total, 0, 0});
-  };
-}
-
 RunTasks Job::run_tasks() const {
   return [this](TaskList& tasks, TaskWorker& worker) {
     const int wanted = resources.threads > 0 ? resources.threads : allowed_threads();
@@ -259,7 +249,8 @@ void plan_before_reading(const Job& job,
   SourceDisk disk = disk_of(count);
   disk.is_estimate = true;
   disk.may_be_less = count.may_be_less;
-  job.tell(plan_build(expected_point_tree(count.points, job.options.tile), job.plan_request(disk)));
+  job.tell(plan_build(TileTree::over_points(count.points, job.options.tile, nullptr),
+                      job.plan_request(disk)));
 }
 
 void in_workspace(Job& job, const nlohmann::json& fingerprint,
@@ -279,7 +270,7 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
   } catch (...) {
     const Error e = error_in_flight();
     if (e.code() == ErrorCode::resource_exhausted && is_published(job, workspace)) {
-      report_published(job);  // only telling of it failed
+      report_published(job);  // only reporting it failed
       remove_done(workspace, job);
       return;
     }
@@ -351,7 +342,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
                     workspace.folder());
   if (!job.begin(index, &workspace)) {
     job.goes_on_elsewhere = true;
-    // Hours of work will be in the folder, of which its manifest does not tell: no error may remove it.
+    // Hours of work will be in the folder, of which its manifest does not know: no error may remove
+    // it.
     workspace.append({{{"elsewhere", true}}});
     return;
   }
@@ -359,20 +351,19 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
   require_unchanged(job);
-  job.stage("writing")(0, 1);
+  job.tell(StageProgress{"writing", 0, 1});
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});
   job.inode_of_output = inode;
   store.publish(built.t0, built.t0_deaths, job.inputs, job.report);
-  job.stage("writing")(1, 1);
+  job.tell(StageProgress{"writing", 1, 1});
 }
 
 KeptIndex kept_index(const Workspace& workspace, const std::string& key) {
   KeptIndex kept;
   for (const nlohmann::json& line : workspace.lines()) {
     if (line.contains(key)) {
-      const auto& facts = line[key];
-      kept.facts = {facts.at(0).get<std::uint64_t>(), facts.at(1).get<std::uint64_t>()};
+      kept.facts = array_facts_in(line[key]);
       kept.is_sound = true;
     } else if (line.contains(kIsForgotten)) {
       kept.is_sound = false;
@@ -382,7 +373,7 @@ KeptIndex kept_index(const Workspace& workspace, const std::string& key) {
 }
 
 nlohmann::json index_json(const char* kind, const ArrayFileFacts& index) {
-  return {{kind, {index.bytes, index.checksum}}};
+  return {{kind, json_of(index)}};
 }
 
 void forget_index(Workspace& workspace) { workspace.append({{{kIsForgotten, true}}}); }

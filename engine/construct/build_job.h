@@ -40,8 +40,8 @@ struct Job {
   const BuildResources& resources;
   const MemoryPlan memory;  ///< Made once, with the kind of source that it is for.
   BuildReport report;
-  SourceLines lines{};  ///< Beside the points, from when they are read.
-  /// Of the finished pages, from when they are about to get the output's name.
+  SourceLines lines{};  ///< The lines beside the points; set once read.
+  /// The inode of the finished pages, from when they are about to get the output's name.
   std::optional<std::uint64_t> inode_of_output{};
   nlohmann::json began_with{};  ///< input_fingerprint() before anything was read.
   bool inputs_changed = false;  ///< Since then: what was read of them may be of both.
@@ -56,16 +56,10 @@ struct Job {
   /// Hands a plan, or progress, to the observer; does nothing where there is none.
   void tell(const BuildPlan& plan) const;
   void tell(const StageProgress& progress) const;
-  /// A function that tells the observer how far the stage `name` is. Borrows the job.
-  [[nodiscard]] std::function<void(std::uint64_t done, std::uint64_t total)> stage(
-      const char* name) const;
-  /// The same for stages that are named in each call.
-  [[nodiscard]] std::function<void(const char* name, std::uint64_t done, std::uint64_t total)>
-  stages() const;
   [[nodiscard]] SourceOptions source_options() const;
   /// Has tasks of reading done, by the driver or by threads of this process.
   [[nodiscard]] RunTasks run_tasks() const;
-  /// Tells the driver of the build (TaskDriver::begin).
+  /// Announces the build to the driver (TaskDriver::begin).
   /// @param index      index_json() of the source; null before it is read.
   /// @param workspace  Null before there is one.
   [[nodiscard]] bool begin(const nlohmann::json& index, const Workspace* workspace) const;
@@ -107,13 +101,13 @@ void in_workspace(Job& job, const nlohmann::json& fingerprint,
                                                  const BuildPlan& plan);
 
 /// Collapses all tiles, tightens them and publishes the file, unless an input changed meanwhile.
-/// @param index  index_json() of the source, for other processes of the build (ReadSource).
+/// @param index  index_json() of the source, for other processes of the build (take_up_source()).
 /// @throws Error as build_hierarchy() and StoreOutput
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
                  const nlohmann::json& index);
 
-/// Plans a build over points or a TIN from the headers and first lines of its inputs, tells the
-/// observer, and refuses a build that the memory or the disk cannot hold. A source of which any
+/// Plans a build over points or a TIN from the headers and first lines of its inputs, reports it to
+/// the observer, and refuses a build that the memory or the disk cannot hold. A source of which any
 /// part may be left out (by class, bounds or nodata) is never refused here, nor is a pipe, which is
 /// not looked into.
 /// @param disk_of  What the source takes of the disk, given how many points it has.
@@ -160,7 +154,7 @@ template <class Load>
 /// @throws Error corruption  it is another one than an interrupted build had noted; io_error
 void note_index(const Job& job, Workspace& workspace, const char* kind,
                 const ArrayFileFacts& index);
-/// Plans the tiles of a source that has been sorted, and tells the observer.
+/// Plans the tiles of a source that has been sorted, and reports it to the observer.
 /// @throws Error as plan_build()
 [[nodiscard]] BuildPlan plan_sorted(const Job& job, const TileTree& tree, SourceDisk disk);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Who is told what a build does while it works.
+// The observer of a build: it hears what the build does while it works.
 #pragma once
 
 #include "engine/construct/build_plan.h"
@@ -21,7 +21,7 @@ class BuildObserver {
   virtual ~BuildObserver() = default;
 
   /// What the build expects to need: before it begins, and over points and TINs once more when they
-  /// have been sorted. Of a pipe only the latter, since it cannot be counted before it is read.
+  /// have been sorted. A pipe has only the latter, since it cannot be counted before it is read.
   virtual void plan(const BuildPlan& plan);
   /// How far it is; often.
   virtual void progress(const StageProgress& progress);

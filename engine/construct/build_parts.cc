@@ -15,8 +15,6 @@
 #include "engine/check.h"
 #include "engine/construct/build_job.h"
 #include "engine/construct/build_worker.h"
-#include "engine/construct/memory_plan.h"
-#include "engine/construct/source_kind.h"
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "engine/construct/tasks/task_messages.h"
@@ -43,7 +41,7 @@ FileLayer& files_of(const BuildResources& resources) {
 int parts_of(PartsPhase phase, int parts) { return phase == PartsPhase::kJoin ? 1 : parts; }
 
 // -------------------------------------------------------------------------------------------------
-// What jobs tell: their results, in a file that appears when all of them are there.
+// What jobs report: their results, in a file that appears when all of them are there.
 
 std::string told_in(const std::string& folder, PartsPhase phase, int part) {
   return folder + "/part-" + name_of(phase) + "-" + std::to_string(part);
@@ -93,8 +91,8 @@ void forget_told(FileLayer& files, const std::string& folder, PartsPhase phase, 
   files.unlink(told_in(folder, phase, part));  // gone already where another job met the same
 }
 
-/// Takes up what a job told. False when it told nothing.
-/// @throws Error corruption  what it told is damaged: it is forgotten
+/// Takes up what a job reported. False when it reported nothing.
+/// @throws Error corruption  its report is damaged: it is forgotten
 bool take_told(FileLayer& files, const std::string& folder, PartsPhase phase, int part,
                TaskResults& results) {
   std::ifstream file(told_in(folder, phase, part), std::ios::binary);
@@ -123,7 +121,7 @@ constexpr std::chrono::milliseconds kPatienceForJobs{2000};
 void require_told(FileLayer& files, const std::string& folder, PartsPhase phase, int parts,
                   std::chrono::milliseconds patience, TaskResults& results) {
   for (int part = 0; part < parts_of(phase, parts); ++part) {
-    // That a job was not done is likelier than that what it told shows late.
+    // That a job was not done is likelier than that its report shows late.
     await_file(told_in(folder, phase, part), std::min(patience, kPatienceForJobs), {});
     if (!take_told(files, folder, phase, part, results)) {
       throw Error(ErrorCode::invalid_argument,
@@ -207,7 +205,7 @@ class NoteTaker final : public TaskDriver {
   std::string note_;
 };
 
-/// Goes on from what the jobs told.
+/// Goes on from what the jobs reported.
 class Publisher final : public TaskDriver {
  public:
   Publisher(int parts, const BuildResources& resources)
@@ -259,11 +257,9 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
     }
   }
   BuildWorker worker(inputs, options, resources, note);
-  const MemoryPlan memory = plan_memory(resources.memory_bytes, source_kind(inputs, options));
   const int threads = std::max(resources.threads, 1);
-  const TaskMemory task_memory{tile_bytes_of(memory.kind),
-                               memory.for_tiles(anonymous_bytes_now(), threads), memory.gdal_cache};
-  const TaskGraph graph(worker.tree(), task_memory);
+  const TaskMemory memory = worker.memory(threads);
+  const TaskGraph graph(worker.tree(), memory);
   const BatchOrder order(worker.tree());
   const std::vector<TaskName> names = tasks_of(order, phase, part, parts);
   TaskList tasks(
@@ -273,7 +269,7 @@ void do_tasks(const std::vector<std::string>& inputs, const BuildOptions& option
                                                 : std::nullopt;
       },
       std::move(known));
-  const TaskLimits limits{threads, task_memory.for_tiles, [&](std::uint64_t) {
+  const TaskLimits limits{threads, memory.for_tiles, [&](std::uint64_t) {
                             if (resources.observer != nullptr) {
                               resources.observer->give_back_memory();
                             }

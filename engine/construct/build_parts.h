@@ -7,9 +7,9 @@
 //   join      one job: the other tiles above, up to the root
 //   tighten   `parts` jobs: batches again, and closing the tiles above that lie within the part
 //   publish   one job: closing the others, pages to their places, the index, the output's name
-// A job that was done does nothing when it is done again; one that died tells nothing, and is done
-// anew. A job that meets damage makes the one that wrote it count as not done. All of them see the
-// inputs and the folder beside the output under the same names.
+// Jobs are idempotent: a finished job run again does nothing; one that died reports nothing, and is
+// run anew. A job that meets damage makes the one that wrote it count as not done. All of them see
+// the inputs and the folder beside the output under the same names.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +34,9 @@ struct BegunParts {
                                      const std::string& output, const BuildOptions& options,
                                      const BuildResources& resources);
 
-/// One job. Of the join there is part 0 alone.
+/// One job. The join has part 0 alone.
 /// @param resources  `memory_bytes`, `threads`, `patience`, `files`, `stop` and `observer` count.
-/// @throws Error invalid_argument  a job of the phase before has told nothing yet, or there is no
+/// @throws Error invalid_argument  a job of the phase before has not reported yet, or there is no
 ///                                 such part; corruption  a file of another job is damaged: the
 ///                                 message names the part to be done again; as build()
 void do_part(const std::vector<std::string>& inputs, const BuildOptions& options,

@@ -19,7 +19,7 @@ namespace {
 // A thread's, both halves of the build: measured, with some room (bench/results/builds.md).
 constexpr double kVerticesPerSecond = 150000.0;
 
-/// Of the largest leaf: the last one of a row may be half a side longer than the others.
+/// Samples of the largest leaf: the last one of a row may be half a side longer than the others.
 std::uint64_t samples_of_leaf(const TileTree& tree) {
   TileId last = tree.root();
   while (last.level > 0) {

@@ -20,8 +20,8 @@ struct BuildResources;
 struct BuildPlan {
   std::int64_t tile_side = 0;  ///< Grid units along a leaf of the tree of tiles.
   std::uint64_t leaves = 0;
-  int levels = 0;              ///< Of the tree of tiles, leaves included.
-  std::uint64_t vertices = 0;  ///< Of the full TIN, at most.
+  int levels = 0;              ///< Levels of the tree of tiles, leaves included.
+  std::uint64_t vertices = 0;  ///< Vertices of the full TIN, at most.
   MemoryPlan memory;
   std::uint64_t memory_expected = 0;   ///< Bytes of anonymous memory, at most, by estimate.
   std::uint64_t memory_for_tiles = 0;  ///< Share of `memory.limit` for all tiles in work.
@@ -48,7 +48,7 @@ struct PlanRequest {
   SourceDisk disk;
 };
 
-/// @param tree  Of the terrain's tiles.
+/// @param tree  The tree of the terrain's tiles.
 /// @throws Error resource_exhausted  one tile does not fit into the memory (names the --memory and
 ///                                   the --tile that would), or the disk has less free than needed
 [[nodiscard]] BuildPlan plan_build(const TileTree& tree, const PlanRequest& request);

@@ -63,8 +63,11 @@ void lay_lines(Job& job, const PointFiles& files, PointSource& source) {
   const PointBuckets points = source.sort(files.path(kPointsBelow, 0), false);
   SourceLines& lines = job.lines;
   LineDrape drape(lines.rings_are_flat ? lines.rings : LineSet{}, lines.flat_breaklines, points);
+  const auto progress = [&job](std::uint64_t done, std::uint64_t total) {
+    job.tell(StageProgress{"laying the lines", done, total});
+  };
   LineDrape::Laid laid = drape.lay(job.options.max_edge, job.memory.lines / kBytesOfLineVertex,
-                                   job.resources.stop, job.stage("laying the lines"));
+                                   job.resources.stop, progress);
   lines.breaklines = drape.divided_lines(false);
   append(laid.lines, lines.breaklines);
   lines.rings = lines.rings_are_flat ? std::move(laid.rings) : drape.divided_lines(true);

@@ -30,10 +30,13 @@ TinTriangles sorted_triangles(Job& job, Workspace& workspace, ArrayFileFacts& in
   for (const std::string& name : TinTriangles::kept_files(kTinTriangles)) {
     workspace.remove(name);
   }
+  const auto progress = [&job](const char* stage, std::uint64_t done, std::uint64_t total) {
+    job.tell(StageProgress{stage, done, total});
+  };
   TinTriangles triangles =
       TinTriangles::read(job.inputs[0], job.source_options(),
                          {job.files(), job.sorting_folder(workspace), job.memory.sorting},
-                         job.resources.stop, job.stages(), kept_as);
+                         job.resources.stop, progress, kept_as);
   index_facts = triangles.save(job.files(), index);
   note_index(job, workspace, "tin", index_facts);
   return triangles;

@@ -2,6 +2,7 @@
 #include "engine/construct/build_worker.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/memory_plan.h"
@@ -13,6 +14,7 @@
 #include "engine/construct/tasks/await_file.h"
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/construct/tile_tasks/batch_order.h"
+#include "engine/construct/tile_tasks/task_graph.h"
 #include "engine/construct/tile_tasks/tile_worker.h"
 #include "engine/construct/tiled_source.h"
 #include "engine/error.h"
@@ -70,7 +72,7 @@ struct BuildWorker::Impl {
   FileLayer& files;
   MemoryPlan memory;
   GdalCacheLimit cache;
-  std::unique_ptr<ReadSource> source;  ///< Null while the source is being read.
+  std::optional<TiledSource> tiles;  ///< None while the source is being read.
   std::unique_ptr<StorePacker> packer;
   std::unique_ptr<TaskWorker> worker;
 };
@@ -91,12 +93,10 @@ void BuildWorker::Impl::open_to_read(const std::vector<std::string>& inputs,
 
 void BuildWorker::Impl::open_tiles(const std::vector<std::string>& inputs,
                                    const BuildOptions& options, const BuildNote& note) {
-  source = std::make_unique<ReadSource>(inputs, options, note.index, note.temporary, files,
-                                        resources.stop);
-  const TiledSource& tiles = source->tiled();
-  packer = std::make_unique<StorePacker>(options, tiles.frame, files, note.folder);
-  worker = std::make_unique<TileWorker>(TaskSetup{tiles.tree, collapse_options(options, tiles),
-                                                  tiles.make_starter, *packer, files,
+  tiles = take_up_source(inputs, options, note.index, note.temporary, files, resources.stop);
+  packer = std::make_unique<StorePacker>(options, tiles->frame, files, note.folder);
+  worker = std::make_unique<TileWorker>(TaskSetup{tiles->tree, collapse_options(options, *tiles),
+                                                  tiles->make_starter, *packer, files,
                                                   note.temporary, true, resources.patience});
   if (resources.observer != nullptr) {
     resources.observer->plan(plan());
@@ -105,7 +105,7 @@ void BuildWorker::Impl::open_tiles(const std::vector<std::string>& inputs,
 
 /// What one task at a time takes here, the last join apart.
 BuildPlan BuildWorker::Impl::plan() const {
-  const TileTree& tree = source->tiled().tree;
+  const TileTree& tree = tiles->tree;
   const std::uint64_t leaf = largest_leaf(tree, {0, 0, 0});
   BuildPlan plan;
   plan.tile_side = tree.side();
@@ -133,13 +133,18 @@ BuildWorker::BuildWorker(const std::vector<std::string>& inputs, const BuildOpti
 BuildWorker::~BuildWorker() = default;
 
 TaskWorker& BuildWorker::tasks() noexcept { return *impl_->worker; }
-const TileTree& BuildWorker::tree() const noexcept { return impl_->source->tiled().tree; }
+const TileTree& BuildWorker::tree() const noexcept { return impl_->tiles->tree; }
+
+TaskMemory BuildWorker::memory(int threads) const {
+  const MemoryPlan& all = impl_->memory;
+  return {tile_bytes_of(all.kind), all.for_tiles(anonymous_bytes_now(), threads), all.gdal_cache};
+}
 
 std::string BuildWorker::answer(const std::string& message) {
   try {
     Task task = task_in_message(message);
     task.stop = impl_->resources.stop;
-    if (impl_->source == nullptr) {
+    if (!impl_->tiles) {
       task.bytes =
           impl_->memory.sorting;  // the memory of this process, not of the one that directs
     } else {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include <gdal.h>
 
 #include "engine/construct/process_limits.h"
+#include "engine/number.h"
 
 namespace ptin {
 
@@ -17,7 +19,9 @@ std::uint64_t anonymous_bytes_now() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
     if (line.rfind("RssAnon:", 0) == 0) {
-      return std::stoull(line.substr(8)) * 1024;
+      std::string_view number(line);
+      number.remove_prefix(std::min(line.find_first_of("0123456789"), line.size()));
+      return take_number<std::uint64_t>(number).value_or(0) * 1024;
     }
   }
   return 0;

@@ -14,13 +14,13 @@ namespace ptin {
 /// cgroup or resource limits allow where that is less.
 [[nodiscard]] std::uint64_t default_memory();
 
-/// Anonymous memory of this process now, bytes; 0 where the system does not tell.
+/// Anonymous memory of this process now, bytes; 0 where the system does not say.
 [[nodiscard]] std::uint64_t anonymous_bytes_now();
 
 /// How the memory of one build is shared out. Made once, before anything is read, and handed down.
 struct MemoryPlan {
-  InputKind kind = InputKind::kRaster;  ///< Of the source that it is made for.
-  std::uint64_t limit = 0;              ///< Of the process's anonymous memory, bytes.
+  InputKind kind = InputKind::kRaster;  ///< The source that it is made for.
+  std::uint64_t limit = 0;              ///< Most anonymous memory of the process, bytes.
   std::uint64_t allowed = 0;            ///< By cgroups and resource limits; may be less.
   std::uint64_t gdal_cache = 0;         ///< Decoded blocks of rasters.
   std::uint64_t lines = 0;              ///< Breaklines and boundary, from reading to the end.
@@ -35,7 +35,7 @@ struct MemoryPlan {
 };
 
 /// @param asked  The limit that the caller sets; 0: default_memory().
-/// @param kind   Of the source: points and TINs are sorted before tiles are begun.
+/// @param kind   Kind of the source: points and TINs are sorted before tiles are begun.
 [[nodiscard]] MemoryPlan plan_memory(std::uint64_t asked, InputKind kind);
 
 /// Sets the size of GDAL's block cache, which all of the process shares, for as long as this lives.

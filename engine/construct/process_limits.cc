@@ -89,7 +89,7 @@ std::uint64_t resource_limit(int resource) {
              : kNoLimit;
 }
 
-/// Processors of the affinity; those of the machine where the system does not tell.
+/// Processors of the affinity; those of the machine where the system does not say.
 int processors_of_affinity() {
   constexpr int kMostProcessors = 1 << 20;
   for (int processors = CPU_SETSIZE; processors <= kMostProcessors; processors *= 2) {

@@ -8,7 +8,7 @@
 
 namespace ptin {
 
-/// Where the kernel tells of control groups (cgroups); another place in tests.
+/// Where the kernel shows control groups (cgroups); another place in tests.
 struct CgroupPlace {
   std::string groups = "/proc/self/cgroup";  ///< The groups of this process, one a line.
   std::string root = "/sys/fs/cgroup";       ///< Their limits, of either version of them.

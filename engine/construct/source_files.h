@@ -20,7 +20,7 @@ namespace ptin {
 /// has changed, or that one of its files was added or removed.
 [[nodiscard]] nlohmann::json input_fingerprint(const std::vector<std::string>& inputs);
 
-/// The bytes of all files in a fingerprint, each counted once; 0 where no system tells them.
+/// The bytes of all files in a fingerprint, each counted once; 0 where no system gives them.
 [[nodiscard]] std::uint64_t bytes_in(const nlohmann::json& input_fingerprint);
 
 }  // namespace ptin

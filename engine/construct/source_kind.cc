@@ -34,7 +34,8 @@ std::pair<unsigned, const char*> sets_of(InputKind kind, const std::string& inpu
   return {sets, "this is a TIN"};
 }
 
-/// Refuses options that mean nothing to an input. One that is not there is told of when it is opened.
+/// Refuses options that mean nothing to an input. One that is not there is reported when it is
+/// opened.
 void check_fit(const BuildOptions& options, InputKind kind, const std::string& input) {
   const auto [sets, name] = sets_of(kind, input, options.repair);
   for (const BuildOption& option : build_option_table()) {

@@ -16,7 +16,7 @@ namespace ptin {
 /// @throws Error invalid_argument  there is no input; rasters and points together; several inputs,
 ///                                 a TIN among them; an option that means nothing for the kind of
 ///                                 an input, and that would be ignored without a word
-/// Cost: opens inputs whose name does not tell their kind.
+/// Cost: opens inputs whose name does not show their kind.
 [[nodiscard]] InputKind source_kind(const std::vector<std::string>& inputs,
                                     const BuildOptions& options);
 

@@ -2,18 +2,16 @@
 #include "engine/construct/store_output.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cstring>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/check.h"
 #include "engine/construct/build_option_table.h"
-#include "engine/construct/scratch/plain_value.h"
+#include "engine/crs/crs_facts.h"
+#include "storage/error_table.h"
 #include "storage/file/file_questions.h"
 #include "storage/packed_segment.h"
 
@@ -83,26 +81,6 @@ std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths
 
 namespace {
 
-/// What the output must know of a segment; error bins and descriptors follow it in the bytes.
-struct SegmentFacts {
-  std::uint64_t records, void_records;
-  std::uint64_t bins, descriptors;
-  RecordBounds worst;  ///< Of what was left out.
-  std::uint32_t max_rank;
-  std::uint32_t reserved;
-};
-
-/// Takes plain values from the front of bytes.
-template <PlainValue T>
-std::vector<T> take(std::span<const std::byte>& bytes, std::uint64_t count) {
-  PTIN_CHECK(count <= bytes.size() / sizeof(T));
-  std::vector<T> values(static_cast<std::size_t>(count));
-  const auto part = bytes.first(values.size() * sizeof(T));
-  std::copy(part.begin(), part.end(), std::as_writable_bytes(std::span(values)).begin());
-  bytes = bytes.subspan(part.size());
-  return values;
-}
-
 StoreWriterOptions writer_options(const BuildOptions& options, bool overwrite, FileLayer& files,
                                   const std::string& work_folder) {
   StoreWriterOptions result;
@@ -125,30 +103,12 @@ StorePacker::StorePacker(const BuildOptions& options, const TerrainFrame& frame,
 
 PreparedSegment StorePacker::prepare(StarredRecords& records) const {
   detail_.add_rounding(records);
-  SegmentFacts facts{};
   // Of the source's TIN: before records are left out.
-  facts.void_records = static_cast<std::uint64_t>(
+  const auto void_records = static_cast<std::uint64_t>(
       std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
-  facts.worst = detail_.leave_out(records);
-  PackedSegment packed = pack_segment(records, heights_, page_bytes_);
-  const std::optional<PageCounts> counts = count_pages(packed.pages, packed.descriptors, heights_);
-  PTIN_CHECK(counts.has_value());
-  facts.records = counts->records;
-  facts.max_rank = counts->max_rank;
-  facts.bins = counts->bins.size();
-  facts.descriptors = packed.descriptors.size();
-  const std::array<std::span<const std::byte>, 3> parts{
-      std::as_bytes(std::span(&facts, 1)), std::as_bytes(std::span(counts->bins)),
-      std::as_bytes(std::span(packed.descriptors))};
-  PreparedSegment prepared{
-      std::move(packed.pages),
-      std::vector<std::byte>(parts[0].size() + parts[1].size() + parts[2].size())};
-  auto end = prepared.description.begin();
-  for (const std::span<const std::byte> part : parts) {
-    end = std::copy(part.begin(), part.end(), end);
-  }
-  return prepared;
+  const RecordBounds left_out = detail_.leave_out(records);
+  return {pack_segment(records, heights_, page_bytes_), left_out, void_records};
 }
 
 void StorePacker::place(std::span<const std::byte> pages, std::uint64_t offset) const {
@@ -167,19 +127,11 @@ StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, b
       base_error_(frame.height_rounding),
       base_deviation_(frame.height_rounding) {}
 
-void StoreOutput::add(std::span<const std::byte> description) {
-  const SegmentFacts facts = take<SegmentFacts>(description, 1)[0];
-  PageCounts counts;
-  counts.records = facts.records;
-  counts.max_rank = static_cast<std::uint16_t>(facts.max_rank);
-  counts.bins = take<ErrorBin>(description, facts.bins);
-  const auto descriptors = take<layout::NodeEntry>(description, facts.descriptors);
-  void_records_ += facts.void_records;
-  base_error_ = std::max(base_error_, static_cast<double>(facts.worst.error));
-  base_deviation_ = std::max(base_deviation_, static_cast<double>(facts.worst.deviation));
-  max_rank_ = std::max(max_rank_, counts.max_rank);
-  records_ += facts.records;
-  writer_->add_placed(descriptors, counts, frame_.heights);
+void StoreOutput::add(const PreparedSegment& segment) {
+  void_records_ += segment.void_records;
+  base_error_ = std::max(base_error_, static_cast<double>(segment.left_out.error));
+  base_deviation_ = std::max(base_deviation_, static_cast<double>(segment.left_out.deviation));
+  writer_->add_placed(segment, frame_.heights);
 }
 
 std::uint64_t StoreOutput::page_bytes() const {
@@ -188,22 +140,32 @@ std::uint64_t StoreOutput::page_bytes() const {
 
 nlohmann::json StoreOutput::position() const {
   const StoreCheckpoint end = writer_->position();
+  // As bits: JSON knows no infinity.
+  nlohmann::json errors = nlohmann::json::array();
+  for (const ErrorBin& bin : end.errors) {
+    errors.push_back({layout::to_bits(bin.upper), layout::to_bits(bin.max_deviation), bin.records,
+                      bin.void_vertices});
+  }
   return {{"pages", end.pages},
           {"chain", end.chain},
-          {"records", records_},
-          {"rank", max_rank_},
+          {"errors", errors},
+          {"rank", end.max_rank},
           {"void_records", void_records_},
-          // As bits: JSON knows no infinity.
           {"base_error", std::bit_cast<std::uint64_t>(base_error_)},
           {"base_deviation", std::bit_cast<std::uint64_t>(base_deviation_)}};
 }
 
 void StoreOutput::resume(const nlohmann::json& position) {
-  writer_->resume(
-      {position.at("pages").get<std::uint64_t>(), position.at("chain").get<std::uint64_t>()},
-      frame_.heights);
-  records_ = position.at("records").get<std::uint64_t>();
-  max_rank_ = position.at("rank").get<std::uint16_t>();
+  StoreCheckpoint end{position.at("pages").get<std::uint64_t>(),
+                      position.at("chain").get<std::uint64_t>(),
+                      {},
+                      position.at("rank").get<std::uint16_t>()};
+  for (const nlohmann::json& bin : position.at("errors")) {
+    end.errors.push_back({layout::to_float(bin.at(0).get<std::uint32_t>()),
+                          layout::to_float(bin.at(1).get<std::uint32_t>()),
+                          bin.at(2).get<std::uint64_t>(), bin.at(3).get<std::uint64_t>()});
+  }
+  writer_->resume(end, frame_.heights);
   void_records_ = position.at("void_records").get<std::uint64_t>();
   base_error_ = std::bit_cast<double>(position.at("base_error").get<std::uint64_t>());
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
@@ -228,17 +190,22 @@ void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
   facts.source_samples = report.source_samples;
   facts.free_of_voids = void_records_ == 0 && !has_void(coarsest);
   facts.page_bytes = options_.page_bytes;
+  nlohmann::json crs{{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}};
+  if (nlohmann::json told = json_of(crs_facts(frame_.crs_wkt)); !told.is_null()) {
+    crs["facts"] = std::move(told);
+  }
   const nlohmann::json metadata{
-      {"crs", {{"wkt", frame_.crs_wkt}, {"vertical_known", frame_.vertical_crs_known}}},
+      {"crs", std::move(crs)},
       {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},
       {"source", source_json(inputs, report)}};
   writer_->publish(facts, coarsest,
                    metadata.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  report.records = records_;
+  const StoreCheckpoint end = writer_->position();
+  report.records = records_in(end.errors);
   report.t0_vertices = coarsest.vertices.size();
-  report.max_rank = max_rank_;
+  report.max_rank = end.max_rank;
   report.file_bytes = bytes_of_file(path_);
 }
 

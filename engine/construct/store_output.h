@@ -50,14 +50,14 @@ class StoreOutput final : public SegmentOutput {
 
   [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
   /// @throws Error as StoreWriter::add_placed
-  void add(std::span<const std::byte> description) override;
+  void add(const PreparedSegment& segment) override;
   [[nodiscard]] std::uint64_t page_bytes() const override;
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
   void resume(const nlohmann::json& position) override;
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
-  /// @param t0_deaths  Beside t0.triangles, as deaths_of().
+  /// @param t0_deaths  One for each of t0.triangles, as deaths_of().
   /// @param inputs   Names for the metadata; their folders are left out, so that the bytes do not
   /// depend on them.
   /// @param report   Counts for the metadata; receives records, t0_vertices, max_rank, file_bytes.
@@ -73,16 +73,14 @@ class StoreOutput final : public SegmentOutput {
   StorePacker packer_;
   double base_error_ = 0.0;
   double base_deviation_ = 0.0;
-  std::uint64_t records_ = 0;
-  std::uint16_t max_rank_ = 0;
   std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
 };
 
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.
 [[nodiscard]] CoarsestTin coarsest_tin(const Tin& tin);
 
-/// Beside the triangles of coarsest_tin(): their deaths as the file has them.
-/// @param deaths  Beside tin.triangles.
+/// Deaths of the triangles of coarsest_tin(), as the file has them.
+/// @param deaths  One for each of tin.triangles.
 [[nodiscard]] std::vector<float> coarsest_deaths(const Tin& tin, std::span<const float> deaths,
                                                  const StoredDetail& detail);
 

@@ -12,7 +12,7 @@ namespace ptin {
 /// One rule for errors and for deaths, each of which is the error of a record: a triangle whose
 /// successor is left out is one of the file's finest TIN.
 struct StoredDetail {
-  double height_rounding = 0.0;  ///< Of storing heights, in the height's unit.
+  double height_rounding = 0.0;  ///< Most that storing a height rounds it, height's unit.
   double max_error = 0.0;        ///< BuildOptions::max_error; 0: nothing is left out.
 
   /// An error or deviation with the rounding, as a short number (storage/short_float.h). REQUIRES: bound >= 0 or +infinity.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/tiled_source.h"
 
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/collapse/first_pass.h"
 #include "engine/construct/raster/raster_tile.h"
+#include "engine/construct/tasks/task.h"
 #include "engine/construct/tin/tin_tile.h"
 #include "engine/error.h"
 
@@ -27,7 +30,8 @@ TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
 TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
                   const std::stop_token& stop) {
   const MeasureUnits units = measure_units(points.frame(), options.void_slope);
-  const auto tree = std::make_shared<const TileTree>(point_tree(points, options.tile));
+  const auto tree = std::make_shared<const TileTree>(TileTree::over_points(
+      points.size(), options.tile, std::make_shared<const ConvexHull>(points.hull())));
   const auto make_starter = [&points, tree, units, longest = options.max_edge,
                              stop]() -> LeafStarter {
     const auto starter = std::make_shared<PointTileStarter>(points, *tree, units, longest, stop);
@@ -38,7 +42,9 @@ TiledSource tiled(const PointBuckets& points, const BuildOptions& options,
 
 TiledSource tiled(const TinTriangles& triangles, const BuildOptions& options) {
   const MeasureUnits units = measure_units(triangles.frame(), options.void_slope);
-  const auto tree = std::make_shared<const TileTree>(tin_tree(triangles, options.tile));
+  const auto tree = std::make_shared<const TileTree>(
+      TileTree::over_points(triangles.counts().vertices, options.tile,
+                            std::make_shared<const ConvexHull>(triangles.hull())));
   const auto make_starter = [&triangles, tree, units]() -> LeafStarter {
     return [&triangles, tree, units](const SampleRange& window) {
       return start_tin_tile(triangles, *tree, window, units);
@@ -63,27 +69,36 @@ bool is_lost_sorted_source(const Error& error, const std::string& folder) {
                      error.context().starts_with(folder + "/" + kTinTriangles));
 }
 
-ReadSource::ReadSource(const std::vector<std::string>& inputs, const BuildOptions& options,
-                       const nlohmann::json& index, const std::string& folder, FileLayer& files,
-                       const std::stop_token& stop) {
-  const auto facts = [&](const char* kind) {
-    return ArrayFileFacts{index.at(kind).at(0).get<std::uint64_t>(),
-                          index.at(kind).at(1).get<std::uint64_t>()};
-  };
+namespace {
+
+/// The tiles of a source that goes with their starters.
+template <class Source, class... More>
+TiledSource tiled_and_kept(Source&& source, const BuildOptions& options, const More&... more) {
+  const auto kept = std::make_shared<const Source>(std::forward<Source>(source));
+  TiledSource tiles = tiled(*kept, options, more...);
+  tiles.make_starter = [kept, make = std::move(tiles.make_starter)] { return make(); };
+  return tiles;
+}
+
+}  // namespace
+
+TiledSource take_up_source(const std::vector<std::string>& inputs, const BuildOptions& options,
+                           const nlohmann::json& index, const std::string& folder, FileLayer& files,
+                           const std::stop_token& stop) {
+  const auto facts = [&](const char* kind) { return array_facts_in(index.at(kind)); };
   const auto path = [&](const char* name) { return folder + "/" + name; };
   if (index.contains("raster")) {
-    raster_ = std::make_unique<RasterSource>(RasterSource::take_up(
-        inputs, source_options_of(options), path(kRasterIndex), facts("raster")));
-    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*raster_, options));
-  } else if (index.contains("points")) {
-    points_ = std::make_unique<PointBuckets>(
-        PointBuckets::load(files, path(kPointBuckets), path(kPointsIndex), facts("points")));
-    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*points_, options, stop));
-  } else {
-    triangles_ = std::make_unique<TinTriangles>(
-        TinTriangles::load(files, path(kTinTriangles), path(kTinIndex), facts("tin")));
-    tiled_ = std::make_unique<TiledSource>(build_internal::tiled(*triangles_, options));
+    return tiled_and_kept(RasterSource::take_up(inputs, source_options_of(options),
+                                                path(kRasterIndex), facts("raster")),
+                          options);
   }
+  if (index.contains("points")) {
+    return tiled_and_kept(
+        PointBuckets::load(files, path(kPointBuckets), path(kPointsIndex), facts("points")),
+        options, stop);
+  }
+  return tiled_and_kept(
+      TinTriangles::load(files, path(kTinTriangles), path(kTinIndex), facts("tin")), options);
 }
 
 }  // namespace ptin::build_internal

@@ -25,7 +25,7 @@
 
 namespace ptin::build_internal {
 
-/// A terrain in tiles. Borrows the source that it was made of.
+/// A terrain in tiles.
 struct TiledSource {
   TerrainFrame frame;
   MeasureUnits units;
@@ -54,26 +54,16 @@ inline constexpr const char* kTinIndex = "tin.index";
 /// back: damaged, cut, gone, or on a disk that fails. It can be sorted again from the inputs.
 [[nodiscard]] bool is_lost_sorted_source(const Error& error, const std::string& folder);
 
-/// A source that another process has read: of a raster it knows the frame, of points and TINs it
-/// reads what was sorted.
-class ReadSource {
- public:
-  /// @param index   The facts of the source's index, by the name of its kind: {"raster": [bytes,
-  ///                checksum]}, as note_of() made it.
-  /// @param folder  The build's folder of temporary files.
-  /// @throws Error corruption  the index is not what was written; as RasterSource::take_up() and
-  ///               its like
-  ReadSource(const std::vector<std::string>& inputs, const BuildOptions& options,
-             const nlohmann::json& index, const std::string& folder, FileLayer& files,
-             const std::stop_token& stop);
-
-  [[nodiscard]] const TiledSource& tiled() const { return *tiled_; }
-
- private:
-  std::unique_ptr<RasterSource> raster_;
-  std::unique_ptr<PointBuckets> points_;
-  std::unique_ptr<TinTriangles> triangles_;
-  std::unique_ptr<TiledSource> tiled_;
-};
+/// A source that another process has read: of a raster it knows the frame, of points and TINs it reads
+/// what was sorted. The starters own it.
+/// @param index   The facts of the source's index, by the name of its kind: {"raster": [bytes,
+///                checksum]}, as index_json() made it.
+/// @param folder  The build's folder of temporary files.
+/// @throws Error corruption  the index is not what was written; as RasterSource::take_up() and
+///               its like
+[[nodiscard]] TiledSource take_up_source(const std::vector<std::string>& inputs,
+                                         const BuildOptions& options, const nlohmann::json& index,
+                                         const std::string& folder, FileLayer& files,
+                                         const std::stop_token& stop);
 
 }  // namespace ptin::build_internal

@@ -15,7 +15,7 @@ namespace ptin {
 /// the border between surface and void may be from that of the source, either way, in an answer that
 /// certifies this error: the error divided by the store's slope of voids (engine/DESIGN.md, section
 /// 3.2). 0 where the store has no voids. +infinity where nothing bounds it: the slope is 0, or the
-/// metadata do not tell it.
+/// metadata do not state it.
 /// @throws Error corruption  the metadata are no JSON
 [[nodiscard]] double border_moved_at_most(const StoreFile& store, double certified_error);
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/crs/crs_facts.h"
 
-#include <memory>
+#include <atomic>
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
-#include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
 
 #include "engine/crs/height_unit.h"
-#include "engine/error.h"
 
 namespace ptin {
 
 namespace {
+
+std::atomic<std::uint64_t> texts_read{0};
 
 std::string text_or_empty(const char* text) {
   return text == nullptr ? std::string() : std::string(text);
@@ -33,6 +33,7 @@ void add_compound(const OGRSpatialReference& srs, CrsFacts& facts) {
   const char* unit = nullptr;
   const double metres = srs.GetTargetLinearUnits("VERT_CS", &unit);
   facts.vertical_unit = unit_called(text_or_empty(unit), metres);
+  facts.ground.metres_per_height = metres;
 }
 
 /// Sets the facts of a CRS whose third axis counts heights.
@@ -45,16 +46,35 @@ void add_third_axis(const OGRSpatialReference& srs, CrsFacts& facts) {
     facts.vertical_unit = unit_called("", metres);
 }
 
+/// Sets the ellipsoid, the size of the map unit, and the order of the axes.
+void add_ground(const OGRSpatialReference& srs, CrsFacts& facts) {
+  GroundFacts& ground = facts.ground;
+  ground.geographic = facts.geographic;
+  ground.semi_major = srs.GetSemiMajor();
+  ground.inverse_flattening = srs.GetInvFlattening();
+  if (facts.geographic) {
+    ground.radians_per_map_unit = srs.GetAngularUnits();
+  } else {
+    ground.metres_per_map_unit = srs.GetLinearUnits();
+  }
+  facts.north_first = srs.EPSGTreatsAsLatLong() != 0 || srs.EPSGTreatsAsNorthingEasting() != 0;
+}
+
 }  // namespace
+
+std::uint64_t crs_texts_read() noexcept { return texts_read; }
 
 CrsFacts crs_facts(const std::string& wkt) {
   CrsFacts facts;
   facts.wkt = wkt;
   if (wkt.empty()) return facts;
+  ++texts_read;
   const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
   OGRSpatialReference srs;
   if (srs.importFromWkt(wkt.c_str()) != OGRERR_NONE) return facts;
+  facts.is_understood = true;
   facts.geographic = srs.IsGeographic() != 0;
+  add_ground(srs, facts);
   const bool is_compound = srs.IsCompound() != 0;
   const char* node = srs.IsProjected() != 0 ? "PROJCS" : (facts.geographic ? "GEOGCS" : "LOCAL_CS");
   facts.name = text_or_empty(srs.GetAttrValue(node));
@@ -72,6 +92,7 @@ CrsFacts crs_facts(const std::string& wkt) {
 }
 
 bool is_same_plane(const CrsFacts& a, const CrsFacts& b) {
+  if (a.is_understood && a.wkt == b.wkt) return true;
   const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
   OGRSpatialReference of_a, of_b;
   const bool is_known = !a.wkt.empty() && !b.wkt.empty() &&
@@ -89,46 +110,5 @@ bool is_same_plane(const CrsFacts& a, const CrsFacts& b) {
                                  "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return of_a.IsSame(&of_b, options) != 0;
 }
-
-nlohmann::json metadata_of(const StoreFile& store) {
-  nlohmann::json json = nlohmann::json::parse(store.metadata_json(), nullptr, false);
-  if (!json.is_object()) {
-    throw Error(ErrorCode::corruption,
-                "the metadata is not a JSON object; the file was not written by ptin build",
-                store.path());
-  }
-  return json;
-}
-
-namespace {
-
-/// The text under `key` of an object; empty when there is none.
-std::string text_at(const nlohmann::json& object, const char* key) {
-  const auto it = object.find(key);
-  return it != object.end() && it->is_string() ? it->get<std::string>() : std::string();
-}
-
-}  // namespace
-
-CrsFacts crs_facts_of(const nlohmann::json& metadata) {
-  const auto it = metadata.find("crs");
-  const nlohmann::json crs = it != metadata.end() ? *it : nlohmann::json::object();
-  std::string wkt = crs.is_string() ? crs.get<std::string>() : std::string();
-  if (crs.is_object()) wkt = text_at(crs, "wkt");
-  if (wkt.empty()) wkt = text_at(metadata, "crs_wkt");
-  CrsFacts facts = crs_facts(wkt);
-  for (const nlohmann::json& place : {crs, metadata.value("units", nlohmann::json::object())}) {
-    if (!place.is_object()) continue;
-    const std::string horizontal =
-        text_at(place, &place == &crs ? "horizontal_unit" : "horizontal");
-    const std::string vertical = text_at(place, &place == &crs ? "vertical_unit" : "height");
-    if (facts.horizontal_unit == "unknown" && !horizontal.empty())
-      facts.horizontal_unit = horizontal;
-    if (facts.vertical_unit == "unknown" && !vertical.empty()) facts.vertical_unit = vertical;
-  }
-  return facts;
-}
-
-CrsFacts crs_facts(const StoreFile& store) { return crs_facts_of(metadata_of(store)); }
 
 }  // namespace ptin

@@ -4,35 +4,12 @@
 #include <optional>
 
 #include <geodesic.h>
-#include <ogr_spatialref.h>
 
 #include "engine/crs/height_unit.h"
 
 namespace ptin {
 
 namespace {
-
-/// Metres in the unit of the heights: that of the vertical CRS, else `unit`, which is that of the
-/// source's band. Where neither is known: the unit of the plane, as GDAL's tools take it.
-double metres_per_height(const OGRSpatialReference& srs, const std::string& unit) {
-  if (srs.IsCompound() != 0) return srs.GetTargetLinearUnits("VERT_CS", nullptr);
-  if (const std::optional<double> metres = metres_in(unit)) return *metres;
-  return srs.IsGeographic() != 0 ? 1.0 : srs.GetLinearUnits();
-}
-
-GroundFacts facts_on(const OGRSpatialReference& srs, double metres_per_height) {
-  GroundFacts facts;
-  facts.geographic = srs.IsGeographic() != 0;
-  facts.semi_major = srs.GetSemiMajor();
-  facts.inverse_flattening = srs.GetInvFlattening();
-  facts.metres_per_height = metres_per_height;
-  if (facts.geographic) {
-    facts.radians_per_map_unit = srs.GetAngularUnits();
-  } else {
-    facts.metres_per_map_unit = srs.GetLinearUnits();
-  }
-  return facts;
-}
 
 GeodesicLength geodesic_of(const GroundFacts& facts) {
   geod_geodesic ellipsoid;
@@ -54,23 +31,30 @@ std::string unit_of_ground(const CrsFacts& crs) {
 }
 
 std::optional<MapPoint> metres_per_map_unit(const CrsFacts& crs, MapPoint at) {
-  OGRSpatialReference srs;
-  if (crs.wkt.empty() || srs.importFromWkt(crs.wkt.c_str()) != OGRERR_NONE) {
+  if (!crs.is_understood) {
     const std::optional<double> metres = metres_in(height_unit_named(crs.horizontal_unit));
     return metres ? std::optional<MapPoint>({*metres, *metres}) : std::nullopt;
   }
-  if (srs.IsGeographic() != 0) return ground_of(facts_on(srs, 1.0), {}).per_map_unit(at);
+  if (crs.geographic) {
+    GroundFacts in_metres = crs.ground;
+    in_metres.metres_per_height = 1.0;
+    return ground_of(in_metres, {}).per_map_unit(at);
+  }
   if (crs.horizontal_unit == "unknown") return std::nullopt;
-  const double metres = srs.GetLinearUnits();
-  return MapPoint{metres, metres};
+  return MapPoint{crs.ground.metres_per_map_unit, crs.ground.metres_per_map_unit};
 }
 
 GroundFacts ground_facts_of(const CrsFacts& crs) {
-  OGRSpatialReference srs;
-  if (!crs.wkt.empty() && srs.importFromWkt(crs.wkt.c_str()) == OGRERR_NONE) {
-    return facts_on(srs, metres_per_height(srs, crs.vertical_unit));
+  GroundFacts facts = crs.ground;
+  if (crs.is_understood) {
+    if (facts.metres_per_height > 0) return facts;
+    // Heights have the unit of the source's band; where nobody knows it that of the plane, as GDAL's
+    // tools take it.
+    facts.metres_per_height =
+        metres_in(crs.vertical_unit).value_or(crs.geographic ? 1.0 : facts.metres_per_map_unit);
+    return facts;
   }
-  GroundFacts facts;
+  facts = {};
   if (const auto told = metres_in(crs.horizontal_unit); told) {
     facts.metres_per_map_unit = *told;  // by the source, without a CRS
     facts.metres_per_height = metres_in(crs.vertical_unit).value_or(*told);

@@ -6,13 +6,15 @@
 #include <optional>
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground_facts.h"
 #include "engine/geometry/affine.h"
 
 namespace ptin {
 
-/// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing tells
+/// The name of the unit of lengths over ground. It is the unit of the heights. Where nothing states
 /// that unit, it is the unit of the plane, or "metre" where the plane is in degrees.
 [[nodiscard]] std::string unit_of_ground(const CrsFacts& crs);
 
@@ -29,5 +31,8 @@ namespace ptin {
 
 /// The numbers of ground_of().
 [[nodiscard]] GroundFacts ground_facts_of(const CrsFacts& crs);
+
+/// The same as JSON, by the names of GroundFacts: what the metadata of files and streams hold.
+[[nodiscard]] nlohmann::json json_of(const GroundFacts& ground);
 
 }  // namespace ptin

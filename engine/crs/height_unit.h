@@ -19,7 +19,8 @@ namespace ptin {
 
 /// The name of a unit of length that a CRS calls `name` and gives so many metres: that of a known unit
 /// of this length, which CRSs spell in many ways or give none; else `name`, or "unknown". A unit named
-/// "unknown" of the length 1, by which libraries stand in for one that nobody told, stays "unknown".
+/// "unknown" of the length 1, which libraries put in the place of one that nobody stated, stays
+/// "unknown".
 [[nodiscard]] std::string unit_called(const std::string& name, double metres);
 
 }  // namespace ptin

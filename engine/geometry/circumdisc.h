@@ -69,7 +69,7 @@ class Circumdisc {
   GridPoint a_;
   std::int64_t area_;
   Int128 u_ = 0, v_ = 0;
-  std::int64_t centre_x_ = 0, centre_y_ = 0;  ///< Of the disc, relative to a; clamped far off.
+  std::int64_t centre_x_ = 0, centre_y_ = 0;  ///< The centre, relative to a; clamped far off.
 };
 
 }  // namespace ptin

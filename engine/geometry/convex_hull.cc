@@ -9,8 +9,8 @@ namespace ptin {
 
 namespace {
 
-/// The strict corners of the hull of `points`, counter-clockwise from the smallest key. Of points
-/// on one line: the two ends. Of fewer than three distinct points: all of them.
+/// The strict corners of the hull of `points`, counter-clockwise from the smallest key. For points
+/// on one line: the two ends. For fewer than three distinct points: all of them.
 std::vector<GridPoint> hull_of(std::vector<GridPoint> points) {
   std::sort(points.begin(), points.end(),
             [](GridPoint a, GridPoint b) { return key_of(a) < key_of(b); });

@@ -15,10 +15,13 @@ struct SideOfVertex {
   int place;  ///< The corner opposite to the side; -1: it is joined.
 };
 
-/// Calls visit(smaller end, larger end, place) for the three sides of a triangle.
+/// Calls visit(smaller end, larger end, place) for the sides of a triangle that have no neighbour.
 template <typename Visit>
 void for_each_side(const Triangle& t, const Visit& visit) {
   for (int i = 0; i < 3; ++i) {
+    if (t.n[i] != kNone) {
+      continue;
+    }
     const VertexId a = t.v[next_corner(i)];
     const VertexId b = t.v[previous_corner(i)];
     visit(std::min(a, b), std::max(a, b), i);
@@ -27,7 +30,7 @@ void for_each_side(const Triangle& t, const Visit& visit) {
 
 }  // namespace
 
-void link_tin(Tin& tin) {
+void link_sides(Tin& tin) {
   std::vector<std::uint32_t> end(tin.vertices.size() + 1);
   for (const Triangle& t : tin.triangles) {
     for_each_side(t, [&](VertexId a, VertexId /*b*/, int /*place*/) { ++end[a + 1]; });
@@ -36,7 +39,7 @@ void link_tin(Tin& tin) {
     end[v + 1] += end[v];
   }
   // Where the sides of a vertex end so far; they begin where those of the vertex before it end.
-  std::vector<SideOfVertex> sides(3 * tin.triangles.size());
+  std::vector<SideOfVertex> sides(end.back());
   std::vector<std::uint32_t> so_far(end.begin(), end.end() - 1);
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     for_each_side(tin.triangles[t], [&](VertexId a, VertexId b, int place) {
@@ -53,6 +56,10 @@ void link_tin(Tin& tin) {
       twin->place = -1;
     });
   }
+}
+
+void link_tin(Tin& tin) {
+  link_sides(tin);
   point_vertices(tin);
 }
 

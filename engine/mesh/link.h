@@ -51,11 +51,17 @@ void join_sides(std::vector<TriangleSide>& sides, const Join& join) {
   }
 }
 
+/// Makes neighbours of triangles that share an edge, where a side has none yet. Where more than two share
+/// one, they are joined two by two in their order.
+/// REQUIRES: corners are vertices.
+/// Cost: linear, as long as no vertex has many such sides; 12 bytes for each of them, and 8 a vertex.
+void link_sides(Tin& tin);
+
 /// Fills Triangle::n and Vertex::triangle; border vertices point where invariant I6
 /// (mesh/validate.h) says. Triangles that do not fit together, as a damaged file may have them,
 /// become a mesh that validate() refuses.
 /// REQUIRES: no neighbour is set; corners are vertices.
-/// Cost: linear, as long as no vertex has many triangles; 12 bytes a side and 8 a vertex.
+/// Cost: as link_sides().
 void link_tin(Tin& tin);
 
 }  // namespace ptin

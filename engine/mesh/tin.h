@@ -44,9 +44,9 @@ struct Triangle {
 /// stands in void triangles only.
 struct Tin {
   std::vector<Vertex> vertices;
-  std::vector<std::uint8_t> has_height;  ///< Beside `vertices`: 1 when the vertex carries a height.
+  std::vector<std::uint8_t> has_height;  ///< 1 for each of `vertices` that carries a height.
   std::vector<Triangle> triangles;
-  std::vector<TriangleClass> classes;  ///< Beside `triangles`.
+  std::vector<TriangleClass> classes;  ///< One for each of `triangles`.
 
   [[nodiscard]] GridPoint position(VertexId v) const noexcept { return vertices[v].position; }
   [[nodiscard]] bool is_alive(TriangleId t) const noexcept { return triangles[t].v[0] != kNone; }

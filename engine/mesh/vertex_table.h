@@ -15,7 +15,7 @@
 namespace ptin {
 
 /// As KeyTable (engine/geometry/key_table.h), for the vertices of one mesh. Keys are not kept: a slot
-/// has half of a hash, and where that is the same the mesh tells the key. So a slot takes 8 bytes,
+/// has half of a hash, and where that is the same the mesh has the key. So a slot takes 8 bytes,
 /// and in the memory of a table of keys at most a third of the slots is taken: most look-ups end at
 /// the first one. Every function is given that mesh. Threads: const functions may run at once.
 class VertexTable {
@@ -94,7 +94,7 @@ class VertexTable {
     return 3 * capacity + 2;
   }
   /// Folds y into x and multiplies (Fibonacci hashing; Knuth, TAOCP 3, section 6.4). The high half
-  /// tells where a key belongs.
+  /// says where a key belongs.
   [[nodiscard]] static std::uint64_t hash_of(VertexKey key) noexcept {
     constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15u;  // 2^64 / phi, odd
     return (key ^ (key >> 27)) * kGoldenRatio;

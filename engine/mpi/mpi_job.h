@@ -32,7 +32,7 @@ class MpiJob {
   [[nodiscard]] TaskDriver* driver() noexcept;
 
   /// What the other ranks do: wait for a build, do its tasks until they are sent home. What a rank
-  /// meets is told to rank 0, whose build() throws it.
+  /// meets is sent to rank 0, whose build() throws it.
   /// @param inputs, options, resources  As BuildWorker.
   /// @throws Error io_error  messages do not arrive
   void work(const std::vector<std::string>& inputs, const BuildOptions& options,

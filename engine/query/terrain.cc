@@ -3,6 +3,11 @@
 
 #include <utility>
 
+#include "engine/query/paper/isoline_extraction.h"
+#include "engine/query/paper/point_location.h"
+#include "engine/query/paper/visibility.h"
+#include "engine/query/questions.h"
+
 namespace ptin {
 
 RefinedTin Terrain::refine(const RefineRequest& request) const {
@@ -15,8 +20,10 @@ MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
   return MovingWindow(*this, options);
 }
 
-LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request) const {
-  return ptin::locate(*this, points, request);
+LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request,
+                             AnswerBy by) const {
+  return is_by_splits(by) ? paper::locate(*this, points, request)
+                          : ptin::locate(*this, points, request);
 }
 
 ProfileResult Terrain::profile(std::span<const MapPoint> line,
@@ -29,6 +36,15 @@ ProfileResult Terrain::profile(std::span<const std::vector<MapPoint>> lines,
   return ptin::profile(*this, lines, request);
 }
 
+RasterResult Terrain::raster(const RasterRequest& request, const RasterReceiver& receive) const {
+  return ptin::raster(*this, request, receive);
+}
+
+RasterResult Terrain::raster(const RasterRequest& request, std::span<double> heights,
+                             std::span<PointState> states) const {
+  return ptin::raster(*this, request, heights, states);
+}
+
 HighestResult Terrain::highest(const HighestRequest& request) const {
   return ptin::highest(*this, request);
 }
@@ -37,20 +53,25 @@ ClassChanges Terrain::class_changes(const ClassChangesRequest& request) const {
   return ptin::class_changes(*this, request);
 }
 
-SightResult Terrain::sight(const SightPair& pair, const SightRequest& request) const {
-  return ptin::sight(*this, pair, request);
+SightResult Terrain::sight(const SightPair& pair, const SightRequest& request, AnswerBy by) const {
+  SightSolver solver = sight_lines(request, 0, by);
+  SightResult result = solver.solve(pair);
+  result.cost.add_counts(solver.base_cost());
+  return result;
 }
 
-SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records) const {
-  return SightSolver(*this, request, coarse_records);
+SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records,
+                                 AnswerBy by) const {
+  return is_by_splits(by) ? paper::sight_lines(*this, request)
+                          : SightSolver(*this, request, coarse_records);
 }
 
 Viewshed Terrain::viewshed(const ViewshedRequest& request) const {
   return ptin::viewshed(*this, request);
 }
 
-Isolines Terrain::isolines(const IsolineRequest& request) const {
-  return ptin::isolines(*this, request);
+Isolines Terrain::isolines(const IsolineRequest& request, AnswerBy by) const {
+  return is_by_splits(by) ? paper::isolines(*this, request) : ptin::isolines(*this, request);
 }
 
 VolumeResult Terrain::volume(const VolumeRequest& request) const {

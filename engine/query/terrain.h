@@ -10,6 +10,7 @@
 // | mesh that follows a region | moving_window   | MovingWindowOptions | refine/moving_window.h   |
 // | heights at points          | locate          | LocateRequest       | heights/locate.h         |
 // | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
+// | heights at pixels          | raster          | RasterRequest       | raster/raster.h          |
 // | highest or lowest point    | highest         | HighestRequest      | heights/highest.h        |
 // | what became void, surface  | class_changes   | ClassChangesRequest | heights/class_changes.h  |
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
@@ -23,45 +24,67 @@
 // A request holds a DetailRequest (which TIN: the full one, one within an error, or the most
 // important vertices; select/detail.h) and QueryLimits (memory and stop token;
 // select/query_limits.h). Two requests differ. A StreamRequest names what is wanted by a predicate.
-// A MovingWindow gets its predicate and its stop token with each move. Every result tells what it
+// A MovingWindow gets its predicate and its stop token with each move. Every result states what it
 // is certified for and what it cost.
 //
-// This header also brings what is done with results: polygons between levels
-// (isoline/isoline_bands.h), lines cut at a window (isoline/isoline_clip.h), isolines of a mesh
-// that grows (isoline/isoline_progressive.h), the receiver of a stream (stream/stream_reader.h), and
-// questions of the mesh that it received (received/received_mesh.h).
+// This header declares requests and results alone. Who asks a question includes its header too, and
+// who asks many questions.h. An empty request, {}, is about the full TIN.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "engine/query/heights/class_changes.h"
-#include "engine/query/heights/highest.h"
-#include "engine/query/heights/locate.h"
-#include "engine/query/heights/profile.h"
-#include "engine/query/isoline/isoline.h"
-#include "engine/query/isoline/isoline_bands.h"
-#include "engine/query/isoline/isoline_clip.h"
-#include "engine/query/isoline/isoline_progressive.h"
-#include "engine/query/living/tin_parts.h"
-#include "engine/query/received/received_mesh.h"
-#include "engine/query/refine/hierarchy_check.h"
-#include "engine/query/refine/moving_window.h"
-#include "engine/query/refine/refine.h"
-#include "engine/query/select/detail.h"
+#include "engine/geometry/affine.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/select/predicate.h"
-#include "engine/query/select/query_limits.h"
-#include "engine/query/sight/sight.h"
-#include "engine/query/sight/viewshed.h"
-#include "engine/query/stream/stream_reader.h"
-#include "engine/query/stream/stream_writer.h"
-#include "engine/query/volume/volume.h"
 
 namespace ptin {
+
+enum class PointState : std::uint8_t;
+struct ClassChanges;
+struct ClassChangesRequest;
+struct HierarchyReport;
+struct HierarchyRequest;
+struct HighestRequest;
+struct HighestResult;
+struct IsolineRequest;
+struct LocateRequest;
+struct LocateResult;
+struct MovingWindowOptions;
+struct PartRequest;
+struct ProfileRequest;
+struct ProfileResult;
+struct RasterBlock;
+struct RasterRequest;
+struct RasterResult;
+struct RefineRequest;
+struct RefinedTin;
+struct SightPair;
+struct SightRequest;
+struct SightResult;
+struct StreamRequest;
+struct StreamSummary;
+struct Viewshed;
+struct ViewshedRequest;
+struct VolumeRequest;
+struct VolumeResult;
+class Isolines;
+class MovingWindow;
+class SightSolver;
+class TinParts;
+
+/// How points, lines of sight and isolines are found.
+enum class AnswerBy : std::uint8_t {
+  /// From the triangles that live at the level and meet the place (engine/DESIGN.md, section 6.15),
+  /// found by the file's own index.
+  kStars,
+  /// As the paper has it (engine/query/paper): records are retrieved by the index in use, sorted
+  /// topologically and applied to T0. A terrain with another index in use always answers so.
+  kSplits,
+};
 
 /// A terrain on disk that answers questions. A copy shares the file and costs nothing.
 /// Threads: all functions but use_index() are const and may be called at once. No question blocks
@@ -69,8 +92,8 @@ namespace ptin {
 ///
 /// Errors that every question may throw; the header of a question names further ones:
 ///   invalid_argument    a request that means nothing
-///   resource_exhausted  the answer needs more memory than the limit; what the index tells of is
-///                       told before pages are read, what results take while they grow
+///   resource_exhausted  the answer needs more memory than the limit; what the index shows is
+///                       refused before pages are read, what results take while they grow
 ///   corruption          a page of the file is damaged, or the file changed since it was opened
 ///   io_error            the file cannot be read
 ///   cancelled           a stop was requested
@@ -92,33 +115,39 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] TinParts parts(PartRequest request) const;
   /// A mesh that begins as T0 and follows predicates. The window shares the file and may outlive
   /// the terrain.
-  [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options = {}) const;
+  [[nodiscard]] MovingWindow moving_window(const MovingWindowOptions& options) const;
 
   /// Heights at points in map units: surface, void and outside told apart.
-  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points,
-                                    const LocateRequest& request = {}) const;
+  [[nodiscard]] LocateResult locate(std::span<const MapPoint> points, const LocateRequest& request,
+                                    AnswerBy by = AnswerBy::kStars) const;
   /// Heights along a polyline, with a break at every edge of the TIN.
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
-                                      const ProfileRequest& request = {}) const;
+                                      const ProfileRequest& request) const;
   [[nodiscard]] ProfileResult profile(std::span<const std::vector<MapPoint>> lines,
-                                      const ProfileRequest& request = {}) const;
+                                      const ProfileRequest& request) const;
+  /// Heights at the centres of pixels, block by block, or in the caller's memory.
+  RasterResult raster(const RasterRequest& request,
+                      const std::function<void(const RasterBlock&)>& receive) const;
+  RasterResult raster(const RasterRequest& request, std::span<double> heights,
+                      std::span<PointState> states = {}) const;
   /// The highest or lowest point of the terrain or of a window.
-  [[nodiscard]] HighestResult highest(const HighestRequest& request = {}) const;
+  [[nodiscard]] HighestResult highest(const HighestRequest& request) const;
   /// Samples that a level of detail moves from surface to void, or back.
   [[nodiscard]] ClassChanges class_changes(const ClassChangesRequest& request) const;
 
   /// Whether the ends of a line see each other.
-  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request = {}) const;
+  [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request,
+                                  AnswerBy by = AnswerBy::kStars) const;
   /// Sight lines of many pairs.
-  /// @param coarse_records  As for the constructor of SightSolver.
-  [[nodiscard]] SightSolver sight_lines(
-      const SightRequest& request,
-      std::uint64_t coarse_records = SightSolver::kCoarseRecords) const;
+  /// @param coarse_records  As for the constructor of SightSolver; by splits there is no coarse level.
+  [[nodiscard]] SightSolver sight_lines(const SightRequest& request, std::uint64_t coarse_records,
+                                        AnswerBy by = AnswerBy::kStars) const;
   /// What one observer sees.
   [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
 
   /// Isolines, joined over the whole terrain.
-  [[nodiscard]] Isolines isolines(const IsolineRequest& request) const;
+  [[nodiscard]] Isolines isolines(const IsolineRequest& request,
+                                  AnswerBy by = AnswerBy::kStars) const;
 
   /// Cut, fill and net volume over or under a level, or between two terrains.
   [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
@@ -128,11 +157,18 @@ class Terrain : public OpenedTerrain {
 
   /// Sends T0 and then splits, the most important ones first. StreamReader (stream/stream_reader.h)
   /// receives them.
-  StreamSummary stream(const StreamRequest& request, const ByteSink& sink) const;
+  StreamSummary stream(const StreamRequest& request,
+                       const std::function<void(std::span<const std::byte>)>& sink) const;
 
   /// Whether the records are closed and saturated, which every question stands on: what verify
   /// looks at beside verify_store().
-  [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request = {}) const;
+  [[nodiscard]] HierarchyReport check_hierarchy(const HierarchyRequest& request) const;
+
+ private:
+  /// The file has one index of stars, so another index in use means records.
+  [[nodiscard]] bool is_by_splits(AnswerBy by) const noexcept {
+    return by == AnswerBy::kSplits || uses_other_index();
+  }
 };
 
 }  // namespace ptin

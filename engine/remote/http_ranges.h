@@ -31,8 +31,8 @@ struct ObjectUrl {
 class HttpRanges final : public RangeSource {
  public:
   static constexpr std::size_t kMostRequests = 16;
-  /// Of the object, in the first request: its front, and the upper levels of the index of a file of
-  /// nine million vertices.
+  /// Bytes of the first request: the object's front, which holds the upper levels of the index of a
+  /// file of nine million vertices.
   static constexpr std::size_t kFrontBytes = std::size_t{64} << 10;
 
   /// @param name  For errors.

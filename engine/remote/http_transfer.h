@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,11 +14,12 @@
 #include <curl/curl.h>
 
 #include "engine/error.h"
+#include "engine/handle.h"
 #include "engine/remote/remote_file.h"
 
 namespace ptin {
 
-/// By what an object is told from the one that takes its place.
+/// What sets an object apart from the one that takes its place.
 struct ObjectIdentity {
   std::uint64_t bytes = 0;
   std::string etag, modified;  ///< As the server says them; empty: it does not.
@@ -42,16 +42,9 @@ struct AnswerHead {
 };
 
 /// libcurl's handles of both kinds are void.
-template <auto kEnd>
-struct CurlEnd {
-  template <class T>
-  void operator()(T* handle) const noexcept {
-    kEnd(handle);
-  }
-};
-using CurlHandle = std::unique_ptr<CURL, CurlEnd<&curl_easy_cleanup>>;
-using CurlMulti = std::unique_ptr<CURLM, CurlEnd<&curl_multi_cleanup>>;
-using CurlList = std::unique_ptr<curl_slist, CurlEnd<&curl_slist_free_all>>;
+using CurlHandle = Handle<CURL, &curl_easy_cleanup>;
+using CurlMulti = Handle<CURLM, &curl_multi_cleanup>;
+using CurlList = Handle<curl_slist, &curl_slist_free_all>;
 
 /// A range of an object by one GET, tried again where that may help. Threads: one at a time.
 class HttpTransfer {

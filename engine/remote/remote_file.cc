@@ -14,6 +14,7 @@
 #include <cpl_vsi.h>
 
 #include "engine/error.h"
+#include "engine/handle.h"
 #include "engine/remote/http_ranges.h"
 #include "engine/remote/vsi_ranges.h"
 
@@ -45,10 +46,6 @@ RemoteOptions configured(RemoteOptions options) {
   return options;
 }
 
-struct Free {
-  void operator()(char* text) const noexcept { CPLFree(text); }
-};
-
 /// The URL of an object in a store, signed by GDAL with the credentials that it finds; empty: it
 /// cannot. It is taken again before it ages, since it is good for an hour.
 class SignedUrl {
@@ -62,7 +59,7 @@ class SignedUrl {
       CPLStringList options;
       options.SetNameValue("EXPIRATION_DELAY", "3600");
       options.SetNameValue("VERB", "GET");
-      const std::unique_ptr<char, Free> url(VSIGetSignedURL(path_.c_str(), options.List()));
+      const Handle<char, &VSIFree> url(VSIGetSignedURL(path_.c_str(), options.List()));
       url_ = url ? url.get() : "";
       taken_ = now;
     }

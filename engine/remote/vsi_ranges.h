@@ -17,8 +17,8 @@
 namespace ptin {
 
 /// Ranges by VSIFReadMultiRangeL, at most 16 in a call, since GDAL opens a connection for each. GDAL
-/// tells no status and no tag: so of an object that was replaced midway the checksums of nodes and
-/// pages tell alone. Threads: as RangeSource; one reads at a time.
+/// gives no status and no tag: so only the checksums of nodes and pages show that an object was
+/// replaced midway. Threads: as RangeSource; one reads at a time.
 class VsiRanges final : public RangeSource {
  public:
   /// @param name  As it was given, for errors.

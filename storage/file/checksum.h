@@ -22,7 +22,7 @@ class RunningChecksum {
 
   void add(std::span<const std::byte> part) noexcept;
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }  ///< Added so far.
-  [[nodiscard]] std::uint64_t value() const noexcept;                    ///< Of all parts so far.
+  [[nodiscard]] std::uint64_t value() const noexcept;                    ///< That of all so far.
 
  private:
   struct State;

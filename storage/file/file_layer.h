@@ -90,7 +90,7 @@ class ScratchFile {
   void reserve(std::uint64_t offset, std::uint64_t bytes);
   void truncate(std::uint64_t bytes);
   void sync();
-  /// Closes a kept file that nothing more is done with. File systems over a network tell only now of
+  /// Closes a kept file that nothing more is done with. File systems over a network report only now
   /// what they could not write.
   void close();
   /// Syncs, closes, renames onto `target` and syncs the folder. With `replace` off an existing

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Questions about files, asked by name. std::filesystem answers them; what the system refuses to
-// tell is an Error.
+// say is an Error.
 #pragma once
 
 #include <cstdint>

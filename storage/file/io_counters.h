@@ -13,7 +13,7 @@ struct IoCounters {
   std::uint64_t bytes_read = 0;        ///< Bytes of record pages and index nodes examined.
   std::uint64_t pages_verified = 0;    ///< Pages whose checksum was computed in this query.
   std::uint64_t ranges_announced = 0;  ///< Coalesced ranges given to the kernel ahead of reading.
-  // Of a file that lies elsewhere; 0 of others.
+  // Counts for a file that lies elsewhere; 0 for others.
   std::uint64_t remote_rounds = 0;    ///< Times that the question waited for the server.
   std::uint64_t remote_requests = 0;  ///< Ranges asked for.
   std::uint64_t remote_bytes = 0;     ///< That these held.

@@ -23,6 +23,16 @@ struct RangeRead {
   std::span<std::byte> out;
 };
 
+/// What is kept of a file that lies elsewhere.
+struct RemoteCaches {
+  /// In memory: the parts used last, at least 1 MiB of them. A round of reading takes up to 6 MiB
+  /// besides.
+  std::uint64_t memory_bytes = std::uint64_t{64} << 20;
+  /// A folder in which what was read is kept for the next opening too; empty: none. A file in it has
+  /// the name of the content, and so is never out of date.
+  std::string folder;
+};
+
 /// One object, the same from its opening on: what is read of it is of that object, or an error.
 /// Threads: read() may be called from several at once.
 class RangeSource {

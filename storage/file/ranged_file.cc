@@ -16,10 +16,10 @@ constexpr std::uint64_t kMostRoundBytes = std::uint64_t{4} << 20;
 
 }  // namespace
 
-RangedFile::RangedFile(std::shared_ptr<RangeSource> source, const RangedFileOptions& options)
+RangedFile::RangedFile(std::shared_ptr<RangeSource> source, const RemoteCaches& caches)
     : source_(std::move(source)),
-      options_(options),
-      most_blocks_(std::max(options.cache_bytes, kLeastCacheBytes) / kBlockBytes) {
+      caches_(caches),
+      most_blocks_(std::max(caches.memory_bytes, kLeastCacheBytes) / kBlockBytes) {
   const std::span<const std::byte> front = source_->front();
   all_ = {1, 1, front.size()};
   for (Number number = 0; number * kBlockBytes < front.size(); ++number) {
@@ -38,8 +38,8 @@ std::uint64_t RangedFile::length_of(Number number) const {
 }
 
 void RangedFile::keep_on_disk(std::uint64_t key) {
-  if (!options_.cache_folder.empty()) {
-    disk_ = std::make_unique<SparseCache>(options_.cache_folder, key, bytes());
+  if (!caches_.folder.empty()) {
+    disk_ = std::make_unique<SparseCache>(caches_.folder, key, bytes());
   }
 }
 

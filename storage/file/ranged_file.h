@@ -22,13 +22,6 @@
 
 namespace ptin {
 
-struct RangedFileOptions {
-  /// Of what was read, the part used last is kept in memory; at least kLeastCacheBytes.
-  std::uint64_t cache_bytes = std::uint64_t{64} << 20;
-  /// Where what was read is kept on disk, for the next opening too (sparse_cache.h); empty: nowhere.
-  std::string cache_folder;
-};
-
 /// Reads blocks of 4 KiB, and keeps those used last. What a thread announces is read in one round
 /// when it first reads something that is not there: so nothing is read for a question that ends
 /// before, and what fails is an error of the read, not of the hint. Threads: all functions but
@@ -39,7 +32,7 @@ class RangedFile final : public ReadableFile {
   static constexpr std::uint64_t kLeastCacheBytes = std::uint64_t{1} << 20;
 
   /// Takes what came with the opening of the source.
-  RangedFile(std::shared_ptr<RangeSource> source, const RangedFileOptions& options);
+  RangedFile(std::shared_ptr<RangeSource> source, const RemoteCaches& caches);
   ~RangedFile() override;
 
   [[nodiscard]] const std::string& path() const noexcept override { return source_->name(); }
@@ -50,7 +43,7 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] bool is_at_hand(const ByteRange& range) const noexcept override;
   void settle(IoCounters& counters) const noexcept override;
   /// Forgets what this thread announced and did not read. The server is not asked: each of its answers
-  /// tells whether the object is another one, and once one of them has, this does.
+  /// shows whether the object is another one, and once one of them has, this does.
   void check_unchanged() const override;
 
   /// Keeps blocks in the folder of the options from now on, and looks for them there.
@@ -70,7 +63,7 @@ class RangedFile final : public ReadableFile {
   struct Costs {
     std::uint64_t rounds = 0, requests = 0, bytes = 0;
   };
-  /// Of one thread, which is one question.
+  /// The counters of one thread, which is one question.
   struct Asker {
     std::vector<ByteRange> announced;  ///< In the order of reading.
     Costs costs;
@@ -85,7 +78,7 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] std::uint64_t length_of(Number number) const;
 
   std::shared_ptr<RangeSource> source_;
-  RangedFileOptions options_;
+  RemoteCaches caches_;
   std::uint64_t most_blocks_;
   std::unique_ptr<SparseCache> disk_;
 

@@ -21,7 +21,7 @@ namespace ptin {
 /// once.
 class ReadOnlyFile final : public ReadableFile {
  public:
-  /// @param announcer  Is told what is read next; null: the kernel is.
+  /// @param announcer  Hears what is read next; null: the kernel does.
   /// @throws Error not_found, io_error, invalid_argument (no regular file)
   explicit ReadOnlyFile(const std::string& path, std::shared_ptr<Announcer> announcer = nullptr,
                         ReplacedFile replaced = ReplacedFile::kRefused);

@@ -30,18 +30,18 @@ class ReadableFile {
   ///               opening
   virtual void read_at(std::span<std::byte> out, std::uint64_t offset) const = 0;
 
-  /// Tells that these ranges are read next, by this thread, in this order. A hint: never fails.
+  /// Announces that these ranges are read next, by this thread, in this order. A hint: never fails.
   virtual void will_need(std::span<const ByteRange> ranges) const noexcept = 0;
 
-  /// Whether each read that was not announced is waited for as long as a whole round of them: then it
-  /// is worth reading what will probably be wanted along with what is.
+  /// True for files elsewhere, where one read that was not announced costs as much time as a whole
+  /// announced batch: reading what will probably be wanted along with what is wanted pays there.
   [[nodiscard]] virtual bool is_far() const noexcept { return false; }
   /// Whether a range is read without waiting for the server of a file that is far.
   [[nodiscard]] virtual bool is_at_hand(const ByteRange& /*range*/) const noexcept { return true; }
   /// Adds what this thread's reads cost the server since this was last called.
   virtual void settle(IoCounters& /*counters*/) const noexcept {}
 
-  /// @throws Error corruption  the file is another one than at its opening, as far as can be told
+  /// @throws Error corruption  the file is another one than at its opening, as far as can be seen
   ///                           without reading; io_error
   virtual void check_unchanged() const = 0;
 };

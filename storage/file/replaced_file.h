@@ -11,7 +11,7 @@ namespace ptin {
 enum class ReplacedFile : std::uint8_t {
   kRefused,  ///< Nothing: whoever asks by its name means the other one.
   /// What it held: its bytes are there until it is closed. What is written over it or cut is
-  /// refused all the same, as far as size and modification time tell.
+  /// refused all the same, as far as size and modification time show.
   kAnswers
 };
 

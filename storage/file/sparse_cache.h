@@ -17,7 +17,7 @@ namespace ptin {
 class SparseCache {
  public:
   /// Opens or makes `folder`/KEY.ptin-cache.
-  /// @param bytes  Of the file that is kept.
+  /// @param bytes  Size of the file that is kept.
   /// @throws Error not_found (no such folder), io_error
   SparseCache(const std::string& folder, std::uint64_t key, std::uint64_t bytes);
   SparseCache(const SparseCache&) = delete;

@@ -14,7 +14,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/verify.h"
 #include "tests/construct/line_sets.h"
 #include "tests/construct/made_raster.h"

@@ -13,7 +13,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/test_terrain.h"

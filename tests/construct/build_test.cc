@@ -21,7 +21,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/verify.h"
 #include "tests/construct/exact_oracle.h"
 #include "tests/construct/made_raster.h"

@@ -14,7 +14,7 @@
 #include "engine/construct/build.h"
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/verify.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
@@ -106,7 +106,7 @@ class DrapedBoundary : public testing::Test {
     std::uniform_real_distribution<double> at(-10.0, kExtent + 10);
     std::vector<MapPoint> points;
     for (int i = 0; i < 4000; ++i) points.push_back({at(random), at(random)});
-    const LocateResult before = whole.locate(points), after = cut.locate(points);
+    const LocateResult before = whole.locate(points, {}), after = cut.locate(points, {});
     int inside = 0, outside = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto [x, y] = points[i];
@@ -146,7 +146,7 @@ TEST_F(DrapedBoundary, LiesOnTheSurface) {
   for (const Vertex& v : full.tin.vertices) {
     const MapPoint p = facts.map.to_map(v.position.x, v.position.y);
     if (distance(made_rings(), p.x, p.y) > 0.02) continue;
-    const LocateResult on = whole.locate(std::array{p});
+    const LocateResult on = whole.locate(std::array{p}, {});
     if (on.points[0].state != PointState::kSurface) continue;
     // Half a step of the heights, and what hills rise over a hundredth of a metre.
     EXPECT_NEAR(facts.heights.height(v.height), on.points[0].height, 0.55) << p.x << " " << p.y;

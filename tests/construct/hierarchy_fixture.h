@@ -84,12 +84,8 @@ class FailingFiles final : public FileLayer {
 class RecordsInMemory final : public SegmentOutput {
  public:
   [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
-  /// @param description  The number of bytes of the segment.
-  void add(std::span<const std::byte> description) override {
-    std::size_t bytes = 0;
-    std::memcpy(&bytes, description.data(), sizeof bytes);
-    take_segment(packer_.part(end_, bytes));
-    end_ += bytes;
+  void add(const PreparedSegment& /*segment*/) override {
+    end_ += take_segment(packer_.from(end_));
     ends_[records_.size()] = end_;
   }
   [[nodiscard]] std::uint64_t page_bytes() const override { return end_; }
@@ -121,8 +117,6 @@ class RecordsInMemory final : public SegmentOutput {
       append_array(records.splits);
       append_array(records.corners);
       append_array(records.ring_end);
-      const std::size_t bytes = segment.pages.size();
-      append(segment.description, std::as_bytes(std::span(&bytes, 1)));
       return segment;
     }
     void place(std::span<const std::byte> pages, std::uint64_t offset) const override {
@@ -130,10 +124,9 @@ class RecordsInMemory final : public SegmentOutput {
       bytes_.resize(std::max(bytes_.size(), static_cast<std::size_t>(offset) + pages.size()));
       std::copy(pages.begin(), pages.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(offset));
     }
-    [[nodiscard]] std::vector<std::byte> part(std::size_t begin, std::size_t bytes) const {
+    [[nodiscard]] std::vector<std::byte> from(std::size_t begin) const {
       const std::lock_guard lock(mutex_);
-      const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(begin);
-      return {first, first + static_cast<std::ptrdiff_t>(bytes)};
+      return {bytes_.begin() + static_cast<std::ptrdiff_t>(begin), bytes_.end()};
     }
 
    private:
@@ -141,7 +134,8 @@ class RecordsInMemory final : public SegmentOutput {
     mutable std::vector<std::byte> bytes_;
   };
 
-  void take_segment(const std::vector<std::byte>& pages) {
+  /// Takes the segment that the pages begin with, and tells its bytes.
+  std::size_t take_segment(const std::vector<std::byte>& pages) {
     std::span<const std::byte> rest(pages);
     const auto before = static_cast<std::uint32_t>(records_.corners.size());
     const auto first = records_.ring_end.size();
@@ -161,6 +155,7 @@ class RecordsInMemory final : public SegmentOutput {
     for (std::size_t i = first; i < records_.ring_end.size(); ++i) {
       records_.ring_end[i] += before;
     }
+    return pages.size() - rest.size();
   }
 
   Packer packer_;

@@ -113,9 +113,9 @@ void check_area(const PointSet& set, const std::string& context) {
 std::vector<SourcePoint> spooled(const PointFiles& files, const PointReading& reading) {
   std::vector<SourcePoint> points, block;
   for (const PointReading::Spool& spool : reading.spools) {
-    SpoolReader reader(files, spool.number, spool.points);
-    for (std::uint64_t i = 0; i < spool_blocks(spool.points); ++i) {
-      reader.read(i, block);
+    ArrayFileReader file = files.open(files.path("spool", spool.number), spool.facts);
+    while (!file.at_end()) {
+      read_block(file, block);
       points.insert(points.end(), block.begin(), block.end());
     }
   }

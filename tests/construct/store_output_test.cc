@@ -44,6 +44,13 @@ std::pair<StarredRecords, StarredRecords> halves(const Tile& tile) {
   return {std::move(all), std::move(second)};
 }
 
+/// Packs a segment, places it behind all that were added before, and adds it.
+void add_segment(StoreOutput& output, StarredRecords& records) {
+  const PreparedSegment segment = output.packer().prepare(records);
+  output.packer().place(segment.pages, output.page_bytes());
+  output.add(segment);
+}
+
 /// Writes the records of a random terrain and returns what the store says of them.
 std::vector<VertexSplit> written(const oracle::TestTerrain& terrain, const BuildOptions& options,
                                  double rounding, StoreFacts& facts, BuildReport& report) {

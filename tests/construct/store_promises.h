@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/surface_oracle.h"
 
 namespace ptin::oracle {

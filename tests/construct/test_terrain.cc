@@ -62,13 +62,13 @@ TestTerrain make_sampled(const std::string& name, int width, int height,
   TestTerrain terrain;
   terrain.name = name;
   terrain.slope = slope;
-  terrain.full = make_raster_tin(heights, valid, width, height, encoding, origin);
+  const SampleRange all{origin.x, origin.y, width, height};
+  terrain.full = make_raster_tin(heights, valid, all, encoding);
   if (drop_lone(terrain.full, valid)) {
-    terrain.full = make_raster_tin(heights, valid, width, height, encoding, origin);
+    terrain.full = make_raster_tin(heights, valid, all, encoding);
   }
   terrain.samples = samples_of(terrain.full, encoding);
   measure_depths(terrain);
-  const SampleRange all{origin.x, origin.y, width, height};
   StartedTile started = start_raster_tile(RasterSamples{all, all, heights, valid, true, {}}, all,
                                           units_of(encoding, slope));
   terrain.tile = std::move(started.tile);

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/crs/crs_facts.h"
 
+#include <array>
+#include <string>
+
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <ogr_spatialref.h>
+
+#include "engine/crs/ground.h"
 
 namespace ptin::tools {
 namespace {
@@ -73,6 +79,69 @@ TEST(CrsFacts, AreOfTheSamePlaneWhereOneOfThemHasHeights) {
   EXPECT_TRUE(is_same_plane(crs_facts(utm_3d()), facts_of("EPSG:32617")));
   EXPECT_TRUE(is_same_plane(crs_facts(utm_3d()), facts_of("EPSG:32617+5773")));
   EXPECT_FALSE(is_same_plane(crs_facts(utm_3d()), facts_of("EPSG:32618")));
+}
+
+/// Of every kind: degrees and gon, metres and feet, axes to the north first, heights of each sort.
+constexpr std::array kKinds = {"EPSG:4326",      "EPSG:32617",     "EPSG:2225",      "EPSG:4979",
+                               "EPSG:4326+5773", "EPSG:2225+6360", "EPSG:3413",      "EPSG:31467",
+                               "EPSG:4807",      "EPSG:2193+7839", "EPSG:27700+5701"};
+
+nlohmann::json metadata_with(const CrsFacts& crs, bool has_facts) {
+  nlohmann::json metadata = {{"crs", {{"wkt", crs.wkt}}}, {"units", {{"height", "foot"}}}};
+  if (has_facts) metadata["crs"]["facts"] = json_of(crs);
+  return nlohmann::json::parse(metadata.dump());
+}
+
+TEST(CrsFacts, ThatStandBesideTheTextAreThoseOfTheText) {
+  for (const char* code : kKinds) {
+    const CrsFacts crs = facts_of(code);
+    ASSERT_TRUE(crs.is_understood) << code;
+    const CrsFacts read = crs_facts_of(metadata_with(crs, false));
+    const std::uint64_t before = crs_texts_read();
+    const CrsFacts told = crs_facts_of(metadata_with(crs, true));
+    EXPECT_EQ(crs_texts_read(), before) << code;
+    EXPECT_EQ(told.wkt, read.wkt);
+    EXPECT_EQ(json_of(told), json_of(read)) << code;
+    EXPECT_EQ(told.geographic, read.geographic) << code;
+    EXPECT_EQ(told.vertical_unit, read.vertical_unit) << code;
+    EXPECT_EQ(unit_of_ground(told), unit_of_ground(read)) << code;
+    EXPECT_EQ(json_of(ground_facts_of(told)), json_of(ground_facts_of(read))) << code;
+    EXPECT_TRUE(is_same_plane(told, read)) << code;
+  }
+}
+
+TEST(CrsFacts, AreReadWhereThoseBesideTheTextMeanNothing) {
+  const CrsFacts crs = facts_of("EPSG:4326+5773");
+  const nlohmann::json sound = json_of(crs);
+  const auto is_read = [&](const nlohmann::json& facts) {
+    nlohmann::json metadata = metadata_with(crs, false);
+    metadata["crs"]["facts"] = facts;
+    const std::uint64_t before = crs_texts_read();
+    EXPECT_EQ(crs_facts_of(metadata).name, "WGS 84");
+    return crs_texts_read() > before;
+  };
+  EXPECT_FALSE(is_read(sound));
+  for (const nlohmann::json& facts :
+       {nlohmann::json(), nlohmann::json(5), nlohmann::json::array(), nlohmann::json::object()}) {
+    EXPECT_TRUE(is_read(facts)) << facts;
+  }
+  for (const auto& member : sound.items()) {
+    nlohmann::json facts = sound;
+    facts.erase(member.key());
+    EXPECT_TRUE(is_read(facts)) << member.key();
+    facts[member.key()] = {1, 2};
+    EXPECT_TRUE(is_read(facts)) << member.key();
+  }
+  for (const auto& member : sound["ground"].items()) {
+    nlohmann::json facts = sound;
+    facts["ground"][member.key()] = -1;
+    EXPECT_TRUE(is_read(facts)) << member.key();
+  }
+}
+
+TEST(CrsFacts, OfATextThatIsNotUnderstoodDoNotStandBesideIt) {
+  EXPECT_TRUE(json_of(crs_facts("this is no CRS")).is_null());
+  EXPECT_TRUE(json_of(CrsFacts{}).is_null());
 }
 
 }  // namespace

@@ -7,14 +7,16 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
-#include "storage/described_page.h"
+#include "engine/query/living/living_page.h"
 #include "storage/page_packer.h"
+#include "storage/record_page.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/widest_entry.h"
 
@@ -47,29 +49,32 @@ void check(const VertexSplit& r, std::span<const RingCorner> ring, const HeightE
 void ask_from_the_end(const RecordPage& page, const StarredRecords& records) {
   std::vector<RingCorner> ring;
   RingSpan span;
-  for (std::size_t i = page.records(); i-- > 0;) {
-    RingPlace place;
-    VertexSplit r;
-    ring.clear();
-    const bool is_sound = page.head(i, r) && page.ring(i, place, r, ring, span);
-    const bool is_split = page.split(i, place, r);
-    static_cast<void>(page.roi(i));
-    static_cast<void>(page.error_bits(i));
-    if (!records.empty()) {
-      require(is_sound && is_split && r == records.splits[i] &&
-              std::ranges::equal(ring, records.ring(i)));
+  for (PageRun run(page); run.next();) {
+    run.take_all();
+    for (std::uint32_t k = run.count(); k-- > 0;) {
+      const std::size_t i = run.first() + k;
+      RingPlace place;
+      VertexSplit r;
+      ring.clear();
+      const bool is_sound = page.head(run, k, r) && page.ring(run, k, place, r, ring, span);
+      const bool is_split = page.split(run, k, place, r);
+      static_cast<void>(run.attributes(k));
+      if (!records.empty()) {
+        require(is_sound && is_split && r == records.splits[i] &&
+                std::ranges::equal(ring, records.ring(i)));
+      }
     }
   }
 }
 
 // Takes out what lives at a level below all others and at 0: triangles on the grid.
-void ask_for_living(const DescribedPage& page, std::span<const std::byte> bytes) {
+void ask_for_living(const RecordPage& page) {
   for (const double level : {-1.0, 0.0}) {
-    StarFilter filter;
+    LivingFilter filter;
     filter.level = level;
     LivingStars living;
     try {
-      page.decode_living(bytes, filter, living);
+      take_living(page, filter, living);
     } catch (const Error& e) {
       require(e.code() == ErrorCode::corruption && living.corners.size() == 0);
     }
@@ -96,7 +101,7 @@ void pack_again(const StarredRecords& records, const HeightEncoding& heights) {
   const std::span<const std::byte> packed = packer.finish(entry);
   StarredRecords back;
   const std::string path = "fuzz";
-  DescribedPage(path, PageId{0}, entry, heights, kPageBytes).decode(packed, back);
+  RecordPage(path, PageId{0}, entry, heights, packed).decode(back);
   const auto no_minus_zero = [&](HeightBits h) {
     return heights.type == HeightType::float32 && h == 0x80000000 ? 0U : h;
   };
@@ -125,29 +130,34 @@ PTIN_FUZZ_TARGET(record_page, data, size) {
                                0.0};
   std::vector<std::byte> page(kPageBytes);
   std::memcpy(page.data(), data + 1, std::min<std::size_t>(size - 1, page.size()));
-  const RecordPage numbers(page, heights);
+  layout::PageHeader header;
+  std::memcpy(&header, page.data(), sizeof header);
+  const std::string path = "fuzz";
+  std::optional<RecordPage> numbers;
+  try {
+    numbers.emplace(path, PageId{0}, test::widest_entry(heights.type, header.records), heights,
+                    page);
+  } catch (const Error& e) {
+    require(e.code() == ErrorCode::corruption);
+    return 0;
+  }
   StarredRecords records;
   std::vector<VertexSplit> splits;
-  if (numbers.is_sound()) {
-    const std::string path = "fuzz";
-    const DescribedPage described(
-        path, PageId{0}, test::widest_entry(heights.type, numbers.records()), heights, kPageBytes);
-    try {
-      described.decode(page, records);
-      require(records.size() == numbers.records());
-      described.decode_matching(page, Everything(), splits);
-      require(splits == records.splits);
-    } catch (const Error& e) {
-      require(e.code() == ErrorCode::corruption && records.empty() && records.corners.empty());
-    }
-    ask_for_living(described, page);
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      check(records.splits[i], records.ring(i), heights);
-    }
-    ask_from_the_end(numbers, records);
-    if (!records.empty()) {
-      pack_again(records, heights);
-    }
+  try {
+    numbers->decode(records);
+    require(records.size() == numbers->records());
+    numbers->decode_matching(Everything(), splits);
+    require(splits == records.splits);
+  } catch (const Error& e) {
+    require(e.code() == ErrorCode::corruption && records.empty() && records.corners.empty());
+  }
+  ask_for_living(*numbers);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    check(records.splits[i], records.ring(i), heights);
+  }
+  ask_from_the_end(*numbers, records);
+  if (!records.empty()) {
+    pack_again(records, heights);
   }
   return 0;
 }

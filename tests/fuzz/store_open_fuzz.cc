@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
+#include "engine/query/living/living_page.h"
 #include "storage/point_directory.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
@@ -78,8 +79,11 @@ void use_far(const ptin::test::Bytes& file) {
     for (const DirectoryPage& page : pages) {
       LivingStars living;
       StarredRecords stars;
-      store->read_living(page, {}, living, counters);
-      store->read_stars(page, {}, stars, counters);
+      const auto look = [&](const RecordPage& p) {
+        take_living(p, {}, living);
+        p.decode(stars);
+      };
+      store->look_at(page, look, counters);
     }
   }
 }

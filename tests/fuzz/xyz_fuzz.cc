@@ -12,7 +12,7 @@
 
 PTIN_FUZZ_TARGET(xyz, data, size) {
   ptin::XyzReader reader("fuzz.xyz", std::string(reinterpret_cast<const char*>(data), size));
-  ptin::XyzPoint point;
+  ptin::SourcePoint point;
   try {
     while (reader.next(point)) {
       for (const ptin::Decimal d : {point.x, point.y, point.z}) {

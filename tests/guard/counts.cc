@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "engine/construct/build.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/support/test_folder.h"
 

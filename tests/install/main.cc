@@ -9,7 +9,7 @@
 #include <engine/construct/build.h>
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
-#include <engine/query/terrain.h>
+#include <engine/query/questions.h>
 #include <engine/remote/remote_file.h>
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::reference {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/directory_writer.h"
 #include "storage/packed_segment.h"
 #include "storage/store_writer.h"

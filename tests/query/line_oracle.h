@@ -13,7 +13,7 @@
 
 #include "engine/geometry/height.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin::reference {
 

@@ -25,11 +25,11 @@
 #include "engine/query/heights/profile.h"
 #include "engine/query/isoline/isoline.h"
 #include "engine/query/living/tin_parts.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/moving_window.h"
 #include "engine/query/sight/sight.h"
 #include "engine/query/sight/viewshed.h"
 #include "engine/query/stream/stream_writer.h"
-#include "engine/query/terrain.h"
 #include "engine/query/volume/volume.h"
 #include "storage/file/sigbus_guard.h"
 #include "tests/query/reference_hierarchy.h"
@@ -152,7 +152,7 @@ std::vector<KindOfQuestion> questions() {
       {"Sight",
        [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 2, spot_at(s->facts(), 0.9, 0.8), 2};
-         return [&t, pair] { (void)sight(t, pair); };
+         return [&t, pair] { (void)t.sight(pair, {}); };
        }},
       {"SightSolver",
        [](const Terrain& t, const Store& s) -> Asking {
@@ -163,7 +163,7 @@ std::vector<KindOfQuestion> questions() {
       {"UprightSight",  // decided without a record
        [](const Terrain& t, const Store& s) -> Asking {
          const SightPair pair{spot_at(s->facts(), 0.1, 0.1), 1, spot_at(s->facts(), 0.1, 0.1), 2};
-         return [&t, pair] { (void)sight(t, pair); };
+         return [&t, pair] { (void)t.sight(pair, {}); };
        }},
       {"Highest",
        [](const Terrain& t, const Store&) -> Asking { return [&] { (void)highest(t, {}); }; }},

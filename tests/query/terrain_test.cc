@@ -2,8 +2,6 @@
 //
 // The one face: every question that Terrain answers is that of its sub-room, on the index in use,
 // and within the limits of its request.
-#include "engine/query/terrain.h"
-
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -16,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 
 namespace ptin {
@@ -86,8 +85,8 @@ every_question() {
        [](const Terrain& t, const QueryLimits& l) {
          LocateRequest request;
          request.limits = l;
-         request.by = AnswerBy::kSplits;  // by stars two points fit any limit
-         static_cast<void>(t.locate(line, request));
+         // By stars two points fit any limit.
+         static_cast<void>(t.locate(line, request, AnswerBy::kSplits));
        }},
       {"profile",
        [](const Terrain& t, const QueryLimits& l) {
@@ -119,7 +118,8 @@ every_question() {
        [](const Terrain& t, const QueryLimits& l) {
          SightRequest request;
          request.limits = l;
-         static_cast<void>(t.sight_lines(request).solve({line[0], 2.0, line[1], 2.0}));
+         static_cast<void>(t.sight_lines(request, SightSolver::kCoarseRecords)
+                               .solve({line[0], 2.0, line[1], 2.0}));
        }},
       {"viewshed",
        [](const Terrain& t, const QueryLimits& l) {
@@ -194,7 +194,7 @@ TEST(Terrain, AnswersAsItsSubRoomsDo) {
     EXPECT_EQ(located.points[i].height, expected.points[i].height);
     EXPECT_EQ(located.points[i].height_min, expected.points[i].height_min);
   }
-  EXPECT_EQ(terrain.highest().point.height, highest(terrain, {}).point.height);
+  EXPECT_EQ(terrain.highest({}).point.height, highest(terrain, {}).point.height);
   EXPECT_EQ(terrain.isolines(isoline_request({})).points(),
             isolines(terrain, isoline_request({})).points());
   EXPECT_EQ(terrain.viewshed(viewshed_request({})).visible_pixels,

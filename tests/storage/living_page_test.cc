@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What lives on a page: the triangles that whole rings have, no others, and none that cannot be.
+#include "engine/query/living/living_page.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,7 +17,6 @@
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
-#include "storage/described_page.h"
 #include "storage/page_columns.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
@@ -45,7 +46,7 @@ GridBox box_of_corners(const std::array<Corner, 3>& c) {
 }
 
 /// By whole rings, one triangle after the other.
-std::vector<Made> made_by_rings(const StarredRecords& records, const StarFilter& filter) {
+std::vector<Made> made_by_rings(const StarredRecords& records, const LivingFilter& filter) {
   std::vector<Made> made;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const VertexSplit& r = records.splits[i];
@@ -84,11 +85,9 @@ std::vector<Made> made_of(const LivingStars& living) {
 }
 
 LivingStars living_of(const PackedPage& page, const HeightEncoding& heights,
-                      const StarFilter& filter) {
-  const auto bytes = static_cast<std::uint32_t>(page.bytes.size());
+                      const LivingFilter& filter) {
   LivingStars living;
-  DescribedPage(kPageName, PageId{0}, page.entry, heights, bytes)
-      .decode_living(page.bytes, filter, living);
+  take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes), filter, living);
   return living;
 }
 
@@ -106,13 +105,13 @@ RC_GTEST_PROP(LivingPage, HandsOutWhatWholeRingsHave, (bool are_whole)) {
   const StarredRecords given = strange_records(strange, 100);
   const PackedPage page = packed_page(given, strange.heights(), 65536);
   const StarredRecords records = decoded_page(page, strange.heights());
-  StarFilter filter;
+  LivingFilter filter;
   for (int asked = 0; asked < 20; ++asked) {
     const VertexSplit& r = records.splits[*rc::gen::inRange<std::size_t>(0, records.size())];
     filter.level = *rc::gen::element(-1.0, 0.0, static_cast<double>(r.error), r.error / 2.0);
     const std::int32_t side = *rc::gen::element(0, 20, 3000);
     filter.box = *rc::gen::arbitrary<bool>()
-                     ? StarFilter().box
+                     ? LivingFilter().box
                      : GridBox{r.u.x - side, r.u.y, r.u.x + side, r.u.y + side};
     RC_ASSERT(made_of(living_of(page, strange.heights(), filter)) ==
               made_by_rings(records, filter));
@@ -157,7 +156,7 @@ RC_GTEST_PROP(LivingPage, HandsOutTheStarsAcrossSteps, (bool are_whole)) {
   const PackedPage page = packed_page(given, strange.heights(), 65536);
   const StarredRecords records = decoded_page(page, strange.heights());
   for (int asked = 0; asked < 20; ++asked) {
-    StarFilter filter;
+    LivingFilter filter;
     filter.level = *rc::gen::element(-1.0, 0.0, 3.0);
     const LivingStars all = living_of(page, strange.heights(), filter);
     std::vector<std::uint64_t> steps{*rc::gen::element(std::uint64_t{0}, std::uint64_t{1} << 32)};
@@ -174,13 +173,11 @@ RC_GTEST_PROP(LivingPage, HandsOutTheStarsAcrossSteps, (bool are_whole)) {
 
 /// Looks at a page that a stranger wrote, by a descriptor that admits everything.
 void expect_possible(const PackedPage& page, const HeightEncoding& heights, double level) {
-  StarFilter filter;
+  LivingFilter filter;
   filter.level = level;
   LivingStars living;
-  const auto bytes = static_cast<std::uint32_t>(page.bytes.size());
   const auto code = code_of([&] {
-    DescribedPage(kPageName, PageId{0}, page.entry, heights, bytes)
-        .decode_living(page.bytes, filter, living);
+    take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes), filter, living);
   });
   if (code) {
     ASSERT_EQ(code, ErrorCode::corruption);
@@ -214,7 +211,7 @@ TEST(LivingPage, GivesPossibleTrianglesAtEachFlippedBit) {
 TEST(LivingPage, RefusesWhatTheDescriptorExcludes) {
   StrangeRecords strange(2, HeightType::int32);
   const PackedPage page = packed_page(strange_records(strange, 20), strange.heights());
-  StarFilter filter;
+  LivingFilter filter;
   filter.level = 0.0;
   ASSERT_GT(living_of(page, strange.heights(), filter).stars.size(), 5U);
   const auto expect_refused = [&](const char* name, const auto& change) {

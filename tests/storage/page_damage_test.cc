@@ -12,7 +12,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "storage/described_page.h"
+#include "storage/record_page.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
 #include "tests/storage/two_records.h"
@@ -34,7 +34,7 @@ class DamagedPage : public testing::Test {
   [[nodiscard]] bool is_accepted(const PackedPage& page) const {
     StarredRecords records;
     try {
-      DescribedPage(kPageName, PageId{0}, page.entry, heights_, 4096).decode(page.bytes, records);
+      RecordPage(kPageName, PageId{0}, page.entry, heights_, page.bytes).decode(records);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::corruption);
       EXPECT_NE(e.context().find(kPageName + ", page 0"), std::string::npos);

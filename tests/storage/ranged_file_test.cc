@@ -23,7 +23,7 @@ constexpr std::uint64_t kBlock = RangedFile::kBlockBytes;
 
 class RangedFileTest : public testing::Test {
  protected:
-  void open(std::size_t front = 0, RangedFileOptions options = {}) {
+  void open(std::size_t front = 0, RemoteCaches options = {}) {
     source = std::make_shared<NotingSource>(content, front);
     file = std::make_unique<RangedFile>(source, options);
   }
@@ -100,7 +100,7 @@ TEST_F(RangedFileTest, ForgetsAnnouncementsAtTheNextAndAtTheEndOfAQuestion) {
 }
 
 TEST_F(RangedFileTest, SplitsLongAnnouncementsIntoRoundsThatTheCacheHolds) {
-  open(0, {.cache_bytes = RangedFile::kLeastCacheBytes, .cache_folder = {}});
+  open(0, {.memory_bytes = RangedFile::kLeastCacheBytes, .folder = {}});
   announce({{0, 300 * kBlock}});
   for (std::uint64_t block = 0; block < 300; ++block) expect_reads(block * kBlock, kBlock);
   const std::uint64_t most = RangedFile::kLeastCacheBytes / 4;
@@ -118,7 +118,7 @@ TEST_F(RangedFileTest, SplitsLongAnnouncementsIntoRoundsThatTheCacheHolds) {
 }
 
 TEST_F(RangedFileTest, ReadsAnythingWhateverIsAnnouncedAndHoweverSmallTheCache) {
-  open(5 * kBlock, {.cache_bytes = 0, .cache_folder = {}});
+  open(5 * kBlock, {.memory_bytes = 0, .folder = {}});
   std::mt19937_64 random(7);
   const auto below = [&](std::uint64_t n) { return random() % n; };
   for (int i = 0; i < 300; ++i) {
@@ -158,7 +158,7 @@ TEST_F(RangedFileTest, TellsThatTheObjectWasReplacedFromThenOn) {
 class SparseCacheTest : public RangedFileTest {
  protected:
   void open_kept(std::uint64_t key = 42) {
-    open(0, {.cache_bytes = 0, .cache_folder = folder.path().string()});
+    open(0, {.memory_bytes = 0, .folder = folder.path().string()});
     file->keep_on_disk(key);
   }
   TestFolder folder{TestFolder::Size::kSmall};
@@ -208,7 +208,7 @@ TEST_F(SparseCacheTest, ReadsAgainWhatTheDiskHasDamaged) {
 }
 
 TEST_F(SparseCacheTest, RefusesAFolderThatIsNotThere) {
-  open(0, {.cache_bytes = 0, .cache_folder = folder.file("none")});
+  open(0, {.memory_bytes = 0, .folder = folder.file("none")});
   EXPECT_THROW(file->keep_on_disk(1), Error);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The bytes of a page: what is packed comes back, and what no reader would accept is not packed.
+#include "storage/record_page.h"
+
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -13,7 +15,6 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "storage/described_page.h"
 #include "storage/page_packer.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/strange_records.h"
@@ -94,10 +95,13 @@ void expect_spanned(const VertexSplit& r, const std::vector<RingCorner>& ring, c
   RC_ASSERT(least == span.least_death);
 }
 
-bool lives(const VertexSplit& r, const std::vector<RingCorner>& ring, std::int32_t level) {
-  const auto triangles = triangles_of(r, ring);
-  return std::any_of(triangles.begin(), triangles.end(),
-                     [&](const RingCorner& c) { return death_bits(c.death) <= level + 1; });
+/// The run of a record, all of it taken.
+PageRun run_of(const RecordPage& page, std::size_t record) {
+  PageRun run(page);
+  while (run.next() && record >= run.first() + run.count()) {
+  }
+  run.take_all();
+  return run;
 }
 
 RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
@@ -108,26 +112,24 @@ RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
   }
   const PackedPage bytes = packed_page(records, strange.heights(), 65536);
   const StarredRecords expected = decoded_page(bytes, strange.heights());
-  const RecordPage page(bytes.bytes, strange.heights());
-  RC_ASSERT(page.is_sound());
+  const RecordPage page(kPageName, PageId{0}, bytes.entry, strange.heights(), bytes.bytes);
   RingPlace place;
   for (int asked = 0; asked < 40; ++asked) {
     const auto i = *rc::gen::inRange<std::size_t>(0, page.records());
     place = *rc::gen::arbitrary<bool>() ? RingPlace{} : place;
     VertexSplit r, head;
     std::vector<RingCorner> ring;
-    RC_ASSERT(page.split(i, place, r));
-    RC_ASSERT(page.head(i, head));
+    const PageRun run = run_of(page, i);
+    const auto k = static_cast<std::uint32_t>(i) - run.first();
+    RC_ASSERT(page.split(run, k, place, r));
+    RC_ASSERT(page.head(run, k, head));
     RingSpan span;
-    RC_ASSERT(page.ring(i, place, head, ring, span));
+    RC_ASSERT(page.ring(run, k, place, head, ring, span));
     expect_spanned(r, ring, span, strange.heights().type);
-    const auto level = *rc::gen::inRange<std::int32_t>(-1, kShortInfinity);
-    RC_ASSERT(page.error_bits(i) <= static_cast<std::uint32_t>(level) ||
-              page.may_live(i, place, level) == lives(r, ring, level));
     RC_ASSERT(r == expected.splits[i]);
     RC_ASSERT(std::ranges::equal(ring, expected.ring(i)));
-    RC_ASSERT(page.roi(i) == r.roi);
-    RC_ASSERT(page.error_bits(i) == short_bits(r.error));
+    RC_ASSERT(run.roi(k) == r.roi);
+    RC_ASSERT(run.error_bits(k) == short_bits(r.error));
   }
 }
 

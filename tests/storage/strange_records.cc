@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "storage/described_page.h"
 #include "storage/descriptor.h"
 #include "storage/page_packer.h"
+#include "storage/record_page.h"
 #include "tests/storage/made_star.h"
 
 namespace ptin::test {
@@ -31,9 +31,8 @@ PackedPage packed_page(const StarredRecords& records, const HeightEncoding& heig
 }
 
 StarredRecords decoded_page(const PackedPage& page, const HeightEncoding& heights) {
-  const auto bytes = static_cast<std::uint32_t>(page.bytes.size());
   StarredRecords records;
-  DescribedPage(kPageName, PageId{0}, page.entry, heights, bytes).decode(page.bytes, records);
+  RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes).decode(records);
   return records;
 }
 

@@ -16,6 +16,7 @@
 
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
+#include "storage/error_table.h"
 #include "storage/packed_segment.h"
 #include "storage/page_packer.h"
 #include "storage/record_order.h"
@@ -164,6 +165,7 @@ inline PackedSegment pack_unchecked(const StarredRecords& records, const HeightE
                                     std::uint32_t page_bytes) {
   PackedSegment packed;
   PagePacker page(page_bytes, heights, false);
+  ErrorTable errors;
   const auto finish = [&] {
     layout::NodeEntry descriptor;
     const auto bytes = page.finish(descriptor);
@@ -175,10 +177,16 @@ inline PackedSegment pack_unchecked(const StarredRecords& records, const HeightE
       finish();
       (void)page.add(records.splits[i], records.ring(i));
     }
+    VertexSplit stored = records.splits[i];
+    stored.error = shortened(stored.error);
+    stored.deviation = shortened(stored.deviation);
+    errors.add(stored);
+    packed.max_rank = std::max(packed.max_rank, stored.rank);
   }
   if (!page.empty()) {
     finish();
   }
+  packed.errors = errors.bins();
   return packed;
 }
 

@@ -171,7 +171,7 @@ TEST(CliBadInput, FullDisk) {
   for (const char* name :
        test::some_of({"/a.ply", "/a.xml", "/a.dxf", "/a.stl", "/a.gpkg", "/a.fgb", "/a.tif"}, 3)) {
     std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path() + name};
-    if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "4"});
+    if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "8"});
     expect_refusal(run_ptin(arguments), 7, name);
     EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
@@ -182,7 +182,7 @@ TEST(CliBadInput, FullDisk) {
     EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
   }
   expect_refusal(
-      run_ptin({"render", store, "--size", "2000", "2000", "-o", disk.path() + "/a.png", "-q"}), 7,
+      run_ptin({"render", store, "--size", "1400", "1400", "-o", disk.path() + "/a.png", "-q"}), 7,
       "a.png");
   EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }

@@ -168,6 +168,20 @@ TEST(CutToRegion, GoesThroughVerticesAndAlongEdges) {
   }
 }
 
+TEST(CutToRegion, GoesThroughVerticesWhereDoublesAreCoarserThanSpots) {
+  CutTerrain terrain = grid_terrain(4);
+  // The map coordinate of a vertex leads back to within 5e-7 of its grid coordinate.
+  terrain.facts.map = {500000.1, 5000000.1, 0.001, 0.001};
+  const MapPoint low = terrain.facts.map.to_map(2, 1), high = terrain.facts.map.to_map(6, 7);
+  const Window window{low.x, low.y, high.x, high.y};
+  const Polygon polygon{{square(low.x, low.y, high.x, high.y)}};
+  for (const Region& region : {Region(window), Region(polygon)}) {
+    const Mesh mesh = cut_to_region(terrain.refined, terrain.facts, region);
+    EXPECT_EQ(mesh.vertices.size(), 5U * 7U);
+    EXPECT_EQ(mesh.triangles.size(), 2U * 4U * 6U - 2U);
+  }
+}
+
 TEST(CutToRegion, GivesNothingOutsideOfTheTerrainOrInAVoid) {
   const CutTerrain terrain = grid_terrain(1);
   EXPECT_TRUE(

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
+#include "engine/crs/crs_facts.h"
 #include "engine/query/stream/stream_format.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
@@ -130,6 +132,63 @@ TEST_F(DamagedMetadata, OfAStreamNestedDeepIsACorruption) {
     expect_corruption({"unstream", "-o", folder_.file("m.ply")});
   }
   EXPECT_EQ(folder_.names(), (std::vector<std::string>{"bad", "t.ptin", "t.pts", "t.tif"}));
+}
+
+nlohmann::json metadata_at(const std::string& path) {
+  return nlohmann::json::parse(StoreFile::open(path)->metadata_json());
+}
+
+TEST_F(DamagedMetadata, QuestionsReadNoCrsWhereItsFactsStandInTheFile) {
+  const std::string file = folder_.file("t.ptin");
+  const std::string points = folder_.file("points.csv");
+  const auto bounds = testing::answer_of({"info", file, "--json"}).at("bounds");
+  const auto text = [](double v) { return std::to_string(v); };
+  const std::string x =
+      text((bounds.at("min_x").get<double>() + bounds.at("max_x").get<double>()) / 2);
+  const std::string y =
+      text((bounds.at("min_y").get<double>() + bounds.at("max_y").get<double>()) / 2);
+  const std::string east = text(bounds.at("max_x").get<double>());
+  write_file(points, "x,y\n" + x + "," + y + "\n");
+  const std::vector<std::vector<std::string>> questions = {
+      {"locate", file, x, y, "--json"},
+      {"locate", file, "--points", points, "--json"},
+      {"info", file, "--json"},
+      {"highest", file, "--json"},
+      {"refine", file, "--error", "1", "-o", folder_.file("a.ply"), "--overwrite", "--json"},
+      {"sight", file, x, y, "2", east, y, "2", "--json"},
+      {"isoline", file, "--interval", "5", "-o", folder_.file("a.geojson"), "--overwrite",
+       "--json"},
+      {"export", file, "-o", folder_.file("a.tif"), "--what", "slope", "--overwrite", "--json"}};
+  std::vector<nlohmann::json> answers;
+  const std::uint64_t before = crs_texts_read();
+  for (const auto& question : questions) answers.push_back(testing::answer_of(question));
+  EXPECT_EQ(crs_texts_read(), before);
+
+  // An older file has the text alone, and gives the same answers.
+  nlohmann::json metadata = metadata_at(file);
+  ASSERT_EQ(metadata["crs"]["facts"]["code"], "EPSG:32611");
+  metadata["crs"].erase("facts");
+  write_store(metadata.dump());
+  std::filesystem::rename(bad_, file);
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    const nlohmann::json answer = testing::answer_of(questions[i]);
+    for (const char* name : {"units", "crs", "points", "verdict", "height"}) {
+      EXPECT_EQ(answer.value(name, nlohmann::json()), answers[i].value(name, nlohmann::json()))
+          << questions[i][0];
+    }
+  }
+  EXPECT_GT(crs_texts_read(), before);
+}
+
+TEST_F(DamagedMetadata, VerifyHoldsTheFactsOfTheCrsAgainstItsText) {
+  nlohmann::json metadata = metadata_at(folder_.file("t.ptin"));
+  expect_done({"verify", folder_.file("t.ptin")});
+  metadata["crs"]["facts"]["ground"]["metres_per_map_unit"] = 0.3048;
+  write_store(metadata.dump());
+  const Outcome outcome = run_ptin({"verify", bad_});
+  EXPECT_EQ(outcome.status, 1) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find("the facts of its CRS are not those"), std::string::npos)
+      << outcome.out;
 }
 
 }  // namespace

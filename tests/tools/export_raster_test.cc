@@ -11,12 +11,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tests/tools/raster_reader.h"
+#include "tools/export/pixel_grid.h"
 #include "tools/export/raster_export.h"
-#include "tools/export/tin_samples.h"
 
 namespace ptin::tools {
 namespace {
@@ -103,18 +103,20 @@ TEST(ExportRaster, RasterDoesNotDependOnMemory) {
   const TestFolder folder;
   const Terrain terrain = Terrain::open(built(folder, "mountains_257.tif"));
   const StoreFacts& facts = terrain.store().facts();
-  const PixelGrid grid(facts, {facts.map.step_x * 0.37, facts.map.step_y * 0.41}, std::nullopt);
-  std::string first;
-  for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{2'000'000}}) {
-    PartRequest request;
-    request.limits.memory_bytes = limit;
-    TinParts parts(terrain, request);
-    const RasterTarget target{folder.file("a.tif"), true, false, {}, -9999.0, {}, {}, limit / 8};
-    GDALAllRegister();
-    static_cast<void>(export_raster(parts, grid, target, {}));
-    const std::string bytes = read_file(target.path);
-    if (first.empty()) first = bytes;
-    EXPECT_TRUE(bytes == first);
+  RasterRequest request =
+      pixels_in(std::nullopt, {facts.map.step_x * 0.37, facts.map.step_y * 0.41}, facts);
+  for (const PixelValue value : {PixelValue::kHeight, PixelValue::kSlope}) {
+    std::string first;
+    for (const std::uint64_t limit : {std::uint64_t{1} << 30, std::uint64_t{8'000'000}}) {
+      request.limits.memory_bytes = limit;
+      RasterTarget target{folder.file("a.tif"), true, false, {}, -9999.0, {}, {}, limit / 8};
+      target.content.value = value;
+      GDALAllRegister();
+      static_cast<void>(export_raster(terrain, request, target, {}));
+      const std::string bytes = read_file(target.path);
+      if (first.empty()) first = bytes;
+      EXPECT_TRUE(bytes == first);
+    }
   }
 }
 
@@ -150,19 +152,21 @@ TEST(ExportRaster, RasterInterpolatesTheTriangles) {
     const StoreFacts& facts = terrain.store().facts();
     const GridBox& b = facts.bounds;
     const double pitch = std::max(b.max_x - b.min_x, b.max_y - b.min_y) / 61.3;
-    const PixelGrid grid(facts, {facts.map.step_x * pitch, facts.map.step_y * pitch}, std::nullopt);
-    const PixelRect all{0, 0, grid.columns(), grid.rows()};
-    std::vector<double> heights(static_cast<std::size_t>(all.pixels()), NAN);
-    HeightSamples samples(facts, grid, all, heights);
-    TinParts(terrain, {{}, request.detail, {}}).visit(facts.bounds, [&](const LivingTriangle& t) {
-      samples.add(t);
-    });
+    RasterRequest pixels =
+        pixels_in(std::nullopt, {facts.map.step_x * pitch, facts.map.step_y * pitch}, facts);
+    pixels.detail = request.detail;
+    std::vector<double> heights(static_cast<std::size_t>(pixels.pixels.pixels()));
+    static_cast<void>(terrain.raster(pixels, heights));
+    const SpotMap map(facts.map, facts.bounds);
     std::size_t surface = 0;
     for (std::size_t i = 0; i < heights.size(); ++i) {
-      const auto column = static_cast<std::int64_t>(i) % all.width;
-      const auto row = static_cast<std::int64_t>(i) / all.width;
-      const double expected =
-          height_at(refined.tin, facts, grid.x(column) * 0x1p-20L, grid.y(row) * 0x1p-20L);
+      const auto place = static_cast<std::int64_t>(i);
+      const MapPoint centre =
+          pixels.lattice.centre(pixels.pixels.column + place % pixels.pixels.width,
+                                pixels.pixels.row + place / pixels.pixels.width);
+      const Spot spot = *map.spot(centre);
+      const double expected = height_at(refined.tin, facts, std::ldexp(1.0L, -kSpotBits) * spot.x,
+                                        std::ldexp(1.0L, -kSpotBits) * spot.y);
       ASSERT_EQ(std::isnan(heights[i]), std::isnan(expected)) << name << " " << i;
       if (std::isnan(expected)) continue;
       ASSERT_NEAR(heights[i], expected, 1e-9) << name << " " << i;

@@ -13,7 +13,7 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"

@@ -76,7 +76,7 @@ TEST(Rasterize, TakesTrianglesFarBeyondThePicture) {
   for (const double far : {1e12, -1e12}) {
     const TerrainRaster raster =
         rasterize(refined, facts, make_view({far, far, far + 1, far + 1}, kUnits, 40, 40));
-    for (const PixelClass c : raster.classes) ASSERT_EQ(c, PixelClass::kOutside);
+    for (const PointState c : raster.states) ASSERT_EQ(c, PointState::kOutside);
   }
 }
 
@@ -88,8 +88,8 @@ TEST(Rasterize, FillsEveryPixelOnceWithTheHeightOfItsMiddle) {
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 40; ++x) {
       const bool inside = x >= 10 && x < 30 && y >= 10 && y < 30;
-      ASSERT_EQ(raster.classes[raster.place(x, y)],
-                inside ? PixelClass::kSurface : PixelClass::kOutside);
+      ASSERT_EQ(raster.states[raster.place(x, y)],
+                inside ? PointState::kSurface : PointState::kOutside);
       if (inside) {
         ASSERT_NEAR(raster.heights[raster.place(x, y)], (x + 0.5 - 10) / 2, 1e-5);
       }
@@ -111,8 +111,8 @@ TEST(DrawRelief, IsDarkAwayFromTheLightAndGreyInVoids) {
   for (Vertex& v : away.tin.vertices) v.height = facts.heights.bits(10 - v.position.x);
   EXPECT_GT(brightness(towards, 25, 25), brightness(away, 25, 25) + 60);
   const TerrainRaster raster = rasterize(slope(facts, true), facts, view);
-  EXPECT_EQ(raster.classes[raster.place(40, 40)], PixelClass::kVoid);
-  EXPECT_EQ(raster.classes[raster.place(5, 5)], PixelClass::kSurface);
+  EXPECT_EQ(raster.states[raster.place(40, 40)], PointState::kVoid);
+  EXPECT_EQ(raster.states[raster.place(5, 5)], PointState::kSurface);
 }
 
 /// What is refused before anything is read or drawn, and drawing that is stopped.

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/serve_fixture.h"
 #include "tools/facts/answers.h"
 
@@ -92,7 +92,7 @@ TEST_F(Serve, GivesTheSamplesOfTheTerrainAsTheyAreStored) {
     EXPECT_EQ(coverage["domain"]["axes"]["y"]["start"], first.y);
     const std::vector<MapPoint> at{map.to_map(facts.bounds.min_x + 12, facts.bounds.min_y + 21)};
     EXPECT_EQ(coverage["ranges"]["height"]["values"][6 + 2],
-              mountains_->locate(at).points[0].height);
+              mountains_->locate(at, {}).points[0].height);
   }
   // In another CRS they are as near to each other.
   const std::string box =

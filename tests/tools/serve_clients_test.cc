@@ -111,10 +111,9 @@ TEST_F(ServeClients, SamplesPathsAtEqualDistances) {
   EXPECT_NEAR(points[3]["location"]["lat"].get<double>(), 67.77, 0.05);
   EXPECT_EQ(points[0]["location"], json({{"lat", 60.0}, {"lng", 0.0}}));
   EXPECT_EQ(points[6]["location"], json({{"lat", 60.0}, {"lng", 91.0}}));
-  CrsFacts globe;
-  globe.wkt =
+  const CrsFacts globe = crs_facts(
       R"(GEOGCRS["WGS 84",DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563]],)"
-      R"(CS[ellipsoidal,2],AXIS["longitude",east],AXIS["latitude",north],ANGLEUNIT["degree",0.0174532925199433]])";
+      R"(CS[ellipsoidal,2],AXIS["longitude",east],AXIS["latitude",north],ANGLEUNIT["degree",0.0174532925199433]])");
   const Ground ground = ground_of(globe);
   const auto place = [&](std::size_t i) {
     return MapPoint{points[i]["location"]["lng"], points[i]["location"]["lat"]};

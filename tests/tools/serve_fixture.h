@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/file/sigbus_guard.h"
 #include "tests/tools/http_client.h"
 #include "tests/tools/small_terrains.h"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/program.h"
 #include "tests/tools/serve_fixture.h"
 

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/serve_fixture.h"
 #include "tools/facts/answers.h"
 
@@ -36,7 +36,7 @@ TEST_F(Serve, DecidesLinesOfSightAsTheLibraryDoes) {
   const json told =
       served_->post(in("mountains", "sight"), {{"crs", "native"}, {"pairs", pairs}}).json();
   ASSERT_EQ(told["pairs"].size(), all.size()) << told;
-  SightSolver solver = mountains_->sight_lines(request);
+  SightSolver solver = mountains_->sight_lines(request, SightSolver::kCoarseRecords);
   std::set<std::string> verdicts;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const SightResult expected = solver.solve(all[i]);

@@ -16,10 +16,9 @@
 #include <nlohmann/json.hpp>
 #include <ogrsf_frmts.h>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
-#include "tools/export/tin_samples.h"
 
 namespace ptin::tools {
 namespace {
@@ -300,35 +299,6 @@ TEST_F(SlopeExport, DoesNotDependOnMemoryOrWindows) {
                   whole.values[static_cast<std::size_t>((y + 31) * whole.width + x + 51)]);
       }
     }
-  }
-}
-
-TEST_F(SlopeExport, AddsNormalsInOneOrder) {
-  testing::RasterRecipe recipe;  // sums of such heights depend on their order in the last bits
-  recipe.value = [](int column, int row) {
-    return testing::hills(column, row) * std::pow(10.0, (7 * column + 5 * row) % 12 - 9);
-  };
-  const Terrain terrain = Terrain::open(store_of(recipe));
-  const StoreFacts& facts = terrain.store().facts();
-  const PixelGrid grid(facts, {30, 30}, std::nullopt);
-  const PixelRect part{10, 10, 12, 12};
-  const auto normals_of = [&](const RefinedTin& refined) {
-    std::vector<GridNormal> normals(144);
-    sample_normals(refined.tin, facts, grid, part, part, normals);
-    return normals;
-  };
-  RefinedTin refined = terrain.refine({});
-  const auto whole = normals_of(refined);
-  // The same triangles, the other way round and from another corner on; nobody asks for neighbours.
-  std::reverse(refined.tin.triangles.begin(), refined.tin.triangles.end());
-  std::reverse(refined.tin.classes.begin(), refined.tin.classes.end());
-  for (Triangle& t : refined.tin.triangles) std::rotate(t.v, t.v + 1, t.v + 3);
-  const auto turned = normals_of(refined);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    ASSERT_EQ(whole[i].x, turned[i].x) << i;
-    ASSERT_EQ(whole[i].y, turned[i].y) << i;
-    ASSERT_EQ(whole[i].z, turned[i].z) << i;
-    ASSERT_GT(whole[i].z, 0) << i;
   }
 }
 

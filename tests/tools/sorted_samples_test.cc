@@ -2,11 +2,13 @@
 #include "tools/verify/sorted_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "engine/query/shape/tiler.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -67,7 +69,7 @@ void expect_like_a_map(const GridBox& bounds, std::uint64_t memory, int samples)
     EXPECT_EQ(sorted(found.read(box)), sorted(expected));
   };
   expect_same_in(bounds);
-  expect_same_in(halves_of(halves_of(bounds)[1])[0]);
+  expect_same_in(divided(divided(bounds)[1])[0]);
   for (int i = 0; i < 20; ++i) {
     const std::array<std::int32_t, 2> x{between(bounds.min_x, bounds.max_x),
                                         between(bounds.min_x, bounds.max_x)};

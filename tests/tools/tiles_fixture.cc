@@ -172,7 +172,7 @@ Distances distances_of(const Tiled& tiled, const std::vector<Ecef>& vertices,
   LocateRequest request;
   request.detail.tolerance = tolerance;
   const LocateResult level = tiled.terrain.locate(at, request);
-  const LocateResult full = tiled.terrain.locate(at);
+  const LocateResult full = tiled.terrain.locate(at, {});
   Distances d;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     ++d.vertices;

@@ -22,7 +22,7 @@
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/tools/small_terrains.h"
 #include "tests/tools/tile_reader.h"
 #include "tools/tiles/terrain_tiles.h"

@@ -132,6 +132,16 @@ TEST_F(VerifyLines, AgreesOnCrossingsAtHalfAStep) {
   EXPECT_EQ(verified.status, 0) << verified.out;
 }
 
+/// A resolution counts from 0 in doubles, in which 108.35 is 1083 steps of 0.1 and no more.
+TEST_F(VerifyLines, AgreesOnVerticesBetweenTwoStepsOfAResolution) {
+  write_file(lines(), csv({"LINESTRING Z (51.35 52.25 9,108.35 96.55 4)"}));
+  for (const char* resolution : {"0.1", "0.5"}) {
+    ASSERT_EQ(build({"--breaklines", lines(), "--resolution", resolution}).status, 0);
+    const Outcome verified = verify({"--breaklines", lines()});
+    EXPECT_EQ(verified.status, 0) << verified.out;
+  }
+}
+
 TEST_F(VerifyLines, IsForPoints) {
   write_file(folder_.file("mesh.obj"), "v 0 0 1\nv 9 0 1\nv 0 9 1\nf 1 2 3\n");
   const Outcome tin =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points as text: `verify --against` reads a file by the rules by which it was built, with a reader
-// of its own. One rule a case.
+// Points as text: `verify --against` takes every sample of a file by the rules by which it was built.
+// One rule a case.
 #include <cpl_vsi.h>
 #include <gtest/gtest.h>
 
@@ -169,8 +169,9 @@ TEST_F(VerifyText, TellsEachLineThatItDoesNotUnderstand) {
   write_file(folder_.file("b.csv"), text + "3,4\n3,four,5\n3,4,nan\n");
   const Outcome outcome = verified("b.csv");
   EXPECT_EQ(outcome.status, 1) << outcome.out << outcome.err;
-  for (const char* words : {"b.csv:83: this line has 2 fields, the first one 3",
-                            "b.csv:84: the y of this line", "b.csv:85: the z of this line"}) {
+  for (const char* words :
+       {"b.csv:83: there are 2 fields where the first line has 3",
+        "b.csv:84: the y of this point, 'four'", "b.csv:85: the z of this point, 'nan', is NaN"}) {
     EXPECT_NE(outcome.out.find(words), std::string::npos) << words << "\n" << outcome.out;
   }
 }
@@ -181,7 +182,7 @@ TEST_F(VerifyText, RefusesAHeaderThatLacksAColumn) {
   write_file(folder_.file("b.csv"), lines_of("x,y,depth\n", x_y_z));
   const Outcome outcome = verified("b.csv");
   EXPECT_EQ(outcome.status, 2) << outcome.out;
-  EXPECT_NE(outcome.err.find("names no column for z"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("no column for z"), std::string::npos) << outcome.err;
 }
 
 }  // namespace

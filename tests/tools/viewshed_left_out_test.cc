@@ -4,8 +4,8 @@
 // whole terrain answers.
 #include <gtest/gtest.h>
 
+#include "engine/query/questions.h"
 #include "engine/query/sight/viewshed.h"
-#include "engine/query/terrain.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {

@@ -10,10 +10,10 @@
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "tools/export/tin_samples.h"
 #include "tools/export/tin_sink.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
+#include "tools/slope.h"
 
 namespace ptin::tools {
 
@@ -91,7 +91,7 @@ class OgrSink final : public TinSink {
     feature_.reset();
     CPLErrorReset();
     const bool was_disk_full = is_disk_full(pending_.path());
-    GDALClose(dataset_.release());  // Has no result; GDAL's last error tells.
+    GDALClose(dataset_.release());  // Has no result; GDAL's last error says.
     if (CPLGetLastErrorType() >= CE_Failure || !is_complete())
       throw gdal_failure("cannot finish the output", pending_.path(), was_disk_full);
     pending_.publish();
@@ -99,15 +99,15 @@ class OgrSink final : public TinSink {
 
  private:
   void set_fields(const TinPatch& patch, const std::array<TinPatch::Corner, 3>& triangle) {
-    std::array<VertexId, 3> corners{};
+    std::array<CodedPoint, 3> corners{};
     MapPoint middle;
     for (std::size_t i = 0; i < 3; ++i) {
-      corners[i] = triangle[i].local;
+      const Vertex& v = patch.tin->vertices[triangle[i].local];
+      corners[i] = {v.position, patch.facts->heights.code(v.height)};
       const TinPatch::Point p = patch.point(triangle[i]);
       middle = {middle.x + p[0] / 3, middle.y + p[1] / 3};
     }
-    const Slope slope = slope_of(normal_of(*patch.tin, corners, patch.facts->heights), *patch.facts,
-                                 per_map_unit_(middle));
+    const Slope slope = slope_of(normal_of(corners), *patch.facts, per_map_unit_(middle));
     feature_->SetField(0, slope_in_percent_ ? percent_of(slope) : degrees_of(slope));
     if (const std::optional<double> aspect = aspect_of(slope)) {
       feature_->SetField(1, *aspect);
@@ -131,7 +131,7 @@ class OgrSink final : public TinSink {
     }
   }
   /// Looks whether all features were written. A database (GeoPackage) says itself what it could not
-  /// write. Of a plain file GDAL does not notice every short write, so its features are read back
+  /// write. GDAL does not notice every short write to a plain file, so its features are read back
   /// and counted.
   [[nodiscard]] bool is_complete() const {
     if (has_transactions_) return true;

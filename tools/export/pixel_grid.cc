@@ -11,7 +11,6 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr double kLattice = 1048576.0;  // 2^20
 constexpr std::int64_t kMostPixels = INT32_MAX;
 
 /// Whole numbers in [low, high], as the first and how many there are; that may be 0.
@@ -47,54 +46,28 @@ void check_pixels(std::int64_t columns, std::int64_t rows, std::array<double, 2>
 
 }  // namespace
 
-PixelGrid::PixelGrid(const StoreFacts& facts, std::array<double, 2> size,
-                     const std::optional<Window>& window)
-    : facts_(facts), size_(size), pitch_{size[0] / facts.map.step_x, size[1] / facts.map.step_y} {
+RasterRequest pixels_in(const std::optional<Window>& window, std::array<double, 2> size,
+                        const StoreFacts& facts) {
   const GridBox& b = facts.bounds;
   const MapPoint low = facts.map.to_map(b.min_x, b.min_y);
   const MapPoint high = facts.map.to_map(b.max_x, b.max_y);
   const Window w = window.value_or(Window{low.x, low.y, high.x, high.y});
-  const GridWindow in_pixels = on_grid(w, {low.x, low.y, size_[0], size_[1]});
-  const auto across = whole_numbers_in(in_pixels.min_x, in_pixels.max_x);
-  const auto up = whole_numbers_in(in_pixels.min_y, in_pixels.max_y);
-  first_column_ = across[0];
-  columns_ = across[1];
-  first_row_ = up[0];
-  rows_ = up[1];
-  check_pixels(columns_, rows_, size_, w);
+  const GridWindow in_pixels = on_grid(w, {low.x, low.y, size[0], size[1]});
+  const auto [first_column, columns] = whole_numbers_in(in_pixels.min_x, in_pixels.max_x);
+  const auto [first_row, rows] = whole_numbers_in(in_pixels.min_y, in_pixels.max_y);
+  check_pixels(columns, rows, size, w);
+  RasterRequest request;
+  request.lattice = {low, size[0], -size[1]};
+  // Rows count to the south from the corner, so that those of the terrain are negative.
+  request.pixels = {first_column, -(first_row + rows - 1), columns, rows};
+  return request;
 }
 
-std::array<double, 6> PixelGrid::geotransform() const noexcept {
-  const MapPoint corner = facts_.map.to_map(facts_.bounds.min_x, facts_.bounds.min_y);
-  const double west = corner.x + (static_cast<double>(first_column_) - 0.5) * size_[0];
-  const double north = corner.y + (static_cast<double>(first_row_ + rows_) - 0.5) * size_[1];
-  return {west, size_[0], 0.0, north, 0.0, -size_[1]};
-}
-
-std::int64_t PixelGrid::x(std::int64_t column) const noexcept {
-  const double at = facts_.bounds.min_x + static_cast<double>(first_column_ + column) * pitch_[0];
-  return std::llround(std::clamp(at, -0x1p31, 0x1p31) * kLattice);
-}
-
-std::int64_t PixelGrid::y(std::int64_t row) const noexcept {
-  const auto up = static_cast<double>(first_row_ + rows_ - 1 - row);
-  const double at = facts_.bounds.min_y + up * pitch_[1];
-  return std::llround(std::clamp(at, -0x1p31, 0x1p31) * kLattice);
-}
-
-MapPoint PixelGrid::centre(std::int64_t column, std::int64_t row) const noexcept {
-  const double lattice = 1 / kLattice;
-  return facts_.map.to_map(static_cast<double>(x(column)) * lattice,
-                           static_cast<double>(y(row)) * lattice);
-}
-
-GridBox PixelGrid::box(const PixelRect& rect) const noexcept {
-  const auto down = [](std::int64_t v) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(v >> kLatticeBits, -1, kGridMax + 1));
-  };
-  const auto up = [&](std::int64_t v) { return down(v + (std::int64_t{1} << kLatticeBits) - 1); };
-  return {down(x(rect.column)), down(y(rect.row + rect.height - 1)),
-          up(x(rect.column + rect.width - 1)), up(y(rect.row))};
+std::array<double, 6> geotransform_of(const RasterRequest& request) noexcept {
+  const auto& [origin, step_x, step_y, margin] = request.lattice;
+  const double west = origin.x + (static_cast<double>(request.pixels.column) - 0.5) * step_x;
+  const double north = origin.y + (static_cast<double>(request.pixels.row) - 0.5) * step_y;
+  return {west, step_x, 0.0, north, 0.0, step_y};
 }
 
 }  // namespace ptin::tools

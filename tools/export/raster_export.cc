@@ -7,6 +7,9 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
@@ -16,7 +19,7 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/stop.h"
-#include "tools/export/tin_samples.h"
+#include "tools/export/pixel_grid.h"
 #include "tools/formats/geotiff_crs.h"
 #include "tools/output/gdal_output.h"
 #include "tools/output/pending_file.h"
@@ -75,209 +78,113 @@ CPLStringList options_of(const RasterTarget& target, bool for_copy) {
 /// Checks that the table of blocks fits its memory: GDAL keeps the place and the size of every
 /// block in memory. For a COG it keeps those of the raster that is copied and of the overviews
 /// besides.
-void check_table(const PixelGrid& grid, const RasterTarget& target) {
+void check_table(const PixelRect& raster, const RasterTarget& target) {
   const std::int64_t side = std::stoi(kBlockSide);
   const auto across = [&](std::int64_t pixels) {
     return static_cast<std::uint64_t>((pixels + side - 1) / side);
   };
   constexpr std::uint64_t kBytes = 2 * sizeof(std::uint64_t);
   const std::uint64_t copies = target.is_cog ? 3 : 1;
-  const std::uint64_t table = copies * kBytes * across(grid.columns()) * across(grid.rows());
+  const std::uint64_t table = copies * kBytes * across(raster.width) * across(raster.height);
   if (table <= target.table_bytes) return;
   throw Error(ErrorCode::resource_exhausted,
-              "a raster of " + std::to_string(grid.columns()) + " x " +
-                  std::to_string(grid.rows()) + " pixels takes " + std::to_string(table >> 20) +
+              "a raster of " + std::to_string(raster.width) + " x " +
+                  std::to_string(raster.height) + " pixels takes " + std::to_string(table >> 20) +
                   " MiB of memory for the table of its blocks, and " +
                   std::to_string(target.table_bytes >> 20) +
                   " MiB are there for it; give a larger --pixel-size, a --window or more --memory",
               target.path);
 }
 
-/// Fills a dataset, region by region.
+/// Fills a dataset block by block.
 class RasterWriter {
  public:
-  RasterWriter(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
-               GDALDataset& dataset, const std::function<void(double)>& progress)
-      : parts_(parts),
-        grid_(grid),
+  /// @param request  What is not asked for yet is set.
+  RasterWriter(const Terrain& terrain, RasterRequest request, const RasterTarget& target,
+               GDALDataset& dataset)
+      : terrain_(terrain),
+        request_(std::move(request)),
         target_(target),
         band_(*dataset.GetRasterBand(1)),
-        per_map_unit_(ground_of(target.crs).per_map_unit),
-        progress_(progress) {
+        per_map_unit_(ground_of(target.crs).per_map_unit) {
     int width = 0;
     int height = 0;
     band_.GetBlockSize(&width, &height);
-    block_width_ = width;
-    block_height_ = height;
+    request_.block_width = width;
+    request_.block_height = height;
+    request_.heights = of_heights();
+    request_.normals = !of_heights();
   }
 
-  void run() { write({0, 0, blocks(grid_.columns(), block_width_), rows_of_blocks()}); }
-
-  [[nodiscard]] const WrittenRaster& written() const noexcept { return written_; }
+  WrittenRaster run() {
+    const RasterResult result =
+        terrain_.raster(request_, [this](const RasterBlock& block) { write(block); });
+    return {rounding_, result.surface_pixels};
+  }
 
  private:
-  static std::int64_t blocks(std::int64_t pixels, std::int64_t side) {
-    return (pixels + side - 1) / side;
-  }
-  [[nodiscard]] std::int64_t rows_of_blocks() const { return blocks(grid_.rows(), block_height_); }
-  /// Pixels of a rectangle of blocks, those beyond the raster left out.
-  [[nodiscard]] PixelRect pixels_of(const PixelRect& b) const {
-    const std::int64_t column = b.column * block_width_;
-    const std::int64_t row = b.row * block_height_;
-    return {column, row, std::min(b.width * block_width_, grid_.columns() - column),
-            std::min(b.height * block_height_, grid_.rows() - row)};
-  }
-  static std::array<PixelRect, 2> halves(const PixelRect& r) {
-    PixelRect first = r;
-    PixelRect second = r;
-    if (r.width >= r.height) {
-      first.width = r.width / 2;
-      second.column += first.width;
-      second.width -= first.width;
-    } else {
-      first.height = r.height / 2;
-      second.row += first.height;
-      second.height -= first.height;
-    }
-    return {first, second};
-  }
-  /// Samples and writes a rectangle of blocks: together when the buffers hold it, else half by half.
-  void write(const PixelRect& b) {
-    const PixelRect rect = pixels_of(b);
-    const std::uint64_t pixel_bytes = sizeof(double) + (of_heights() ? 0 : sizeof(GridNormal));
-    const bool buffer_fits =
-        static_cast<std::uint64_t>(rect.pixels()) * pixel_bytes <= target_.buffer_bytes;
-    if (b.pixels() > 1 && !buffer_fits) {
-      for (const PixelRect& half : halves(b)) write(half);
-      return;
-    }
-    const auto pixels = static_cast<std::size_t>(rect.pixels());
-    if (of_heights()) {
-      values_.assign(pixels, std::numeric_limits<double>::quiet_NaN());
-      sample_heights(rect);
-      const auto is_none = [](double v) { return std::isnan(v); };
-      written_.surface_pixels += static_cast<std::uint64_t>(
-          std::count_if(values_.begin(), values_.end(), std::not_fn(is_none)));
-      std::replace_if(values_.begin(), values_.end(), is_none, target_.nodata);
-    } else {
-      values_.assign(pixels, target_.nodata);
-      normals_.assign(pixels, {});
-      sample_normals_of(rect, rect);
-      turn_normals_into_values(rect);
-    }
-    emit(b, rect);
-  }
-
   [[nodiscard]] bool of_heights() const { return target_.content.value == PixelValue::kHeight; }
 
-  void turn_normals_into_values(const PixelRect& rect) {
-    const StoreFacts& facts = parts_.terrain().store().facts();
-    for (std::size_t i = 0; i < normals_.size(); ++i) {
-      if (!(normals_[i].z > 0)) continue;
-      ++written_.surface_pixels;
-      const auto place = static_cast<std::int64_t>(i);
-      const MapPoint centre =
-          grid_.centre(rect.column + place % rect.width, rect.row + place / rect.width);
-      values_[i] = value_of(slope_of(normals_[i], facts, per_map_unit_(centre)));
-    }
-  }
-
-  [[nodiscard]] double value_of(const Slope& slope) const {
-    const PixelContent& content = target_.content;
-    if (content.value == PixelValue::kAspect) return aspect_of(slope).value_or(target_.nodata);
-    if (content.value == PixelValue::kHillshade) return grey_of(content.light.on(slope));
-    return content.in_percent ? percent_of(slope) : degrees_of(slope);
-  }
-
-  void sample_heights(const PixelRect& rect) {
-    const GridBox box = grid_.box(rect);
-    const StoreFacts& facts = parts_.terrain().store().facts();
-    if (!meets(box, facts.bounds)) return;
-    HeightSamples samples(facts, grid_, rect, values_);
-    parts_.visit(box, [&](const LivingTriangle& t) { samples.add(t); });
-  }
-
-  void sample_normals_of(const PixelRect& part, const PixelRect& rect) {
-    const GridBox box = grid_.box(part);
-    if (!meets(box, parts_.terrain().store().facts().bounds)) return;
-    const Tin* tin = parts_.part(box);
-    if (tin == nullptr) {
-      if (part.pixels() == 1) refuse_pixel();
-      for (const PixelRect& half : halves(part)) sample_normals_of(half, rect);
-      return;
-    }
-    const StoreFacts& facts = parts_.terrain().store().facts();
-    sample_normals(*tin, facts, grid_, part, rect, normals_);
-  }
-
-  [[noreturn]] void refuse_pixel() const {
-    throw Error(ErrorCode::resource_exhausted,
-                "what meets a single pixel takes more memory than a part may; give more --memory",
-                target_.path);
-  }
-
-  /// Writes the blocks of `b` in the order in which halving reaches them.
-  void emit(const PixelRect& b, const PixelRect& rect) {
-    if (b.pixels() > 1) {
-      for (const PixelRect& half : halves(b)) emit(half, rect);
-      return;
-    }
+  void write(const RasterBlock& block) {
     if (band_.GetRasterDataType() == GDT_Float64) {
-      write_block<double>(b, rect);
+      write_as<double>(block);
     } else if (band_.GetRasterDataType() == GDT_Byte) {
-      write_block<std::uint8_t>(b, rect);
+      write_as<std::uint8_t>(block);
     } else {
-      write_block<float>(b, rect);
-    }
-    ++blocks_done_;
-    if (progress_) {
-      const auto all = static_cast<double>(blocks(grid_.columns(), block_width_)) *
-                       static_cast<double>(rows_of_blocks());
-      progress_(static_cast<double>(blocks_done_) / all);
+      write_as<float>(block);
     }
   }
 
   template <typename T>
-  void write_block(const PixelRect& b, const PixelRect& rect) {
-    const PixelRect pixels = pixels_of(b);
-    std::vector<T> block(static_cast<std::size_t>(block_width_ * block_height_),
-                         static_cast<T>(target_.nodata));
+  void write_as(const RasterBlock& block) {
+    const PixelRect& pixels = block.pixels;
+    std::vector<T> values(static_cast<std::size_t>(request_.block_width * request_.block_height),
+                          static_cast<T>(target_.nodata));
     for (std::int64_t y = 0; y < pixels.height; ++y) {
-      const std::int64_t from =
-          (pixels.row + y - rect.row) * rect.width + pixels.column - rect.column;
-      std::transform(values_.begin() + from, values_.begin() + from + pixels.width,
-                     block.begin() + y * block_width_, [&](double value) {
-                       const T written = static_cast<T>(value);
-                       note_rounding(value, static_cast<double>(written));
-                       return written;
-                     });
+      for (std::int64_t x = 0; x < pixels.width; ++x) {
+        const std::size_t from =
+            static_cast<std::size_t>(y) * block.stride + static_cast<std::size_t>(x);
+        const std::optional<double> value =
+            of_heights() ? height_of(block.heights[from])
+                         : value_of(block.normals[from], pixels.column + x, pixels.row + y);
+        if (!value) continue;
+        T& written = values[static_cast<std::size_t>(y * request_.block_width + x)];
+        written = static_cast<T>(*value);
+        // Exact: the two numbers are nearly the same.
+        rounding_ = std::max(rounding_,
+                             of_heights() ? std::abs(static_cast<double>(written) - *value) : 0.0);
+      }
     }
     CPLErrorReset();
-    if (band_.WriteBlock(static_cast<int>(b.column), static_cast<int>(b.row), block.data()) !=
-        CE_None) {
+    if (band_.WriteBlock(
+            static_cast<int>((pixels.column - request_.pixels.column) / request_.block_width),
+            static_cast<int>((pixels.row - request_.pixels.row) / request_.block_height),
+            values.data()) != CE_None) {
       throw gdal_failure("cannot write the raster", target_.path);
     }
   }
 
-  void note_rounding(double height, double written) noexcept {
-    if (of_heights() && height != target_.nodata) {
-      // Exact: the two numbers are nearly the same.
-      written_.rounding = std::max(written_.rounding, std::abs(written - height));
-    }
+  static std::optional<double> height_of(double height) {
+    return std::isnan(height) ? std::nullopt : std::optional(height);
   }
 
-  TinParts& parts_;
-  const PixelGrid& grid_;
+  [[nodiscard]] std::optional<double> value_of(const GridNormal& normal, std::int64_t column,
+                                               std::int64_t row) const {
+    if (!(normal.z > 0)) return std::nullopt;
+    const PixelContent& content = target_.content;
+    const MapPoint centre = request_.lattice.centre(column, row);
+    const Slope slope = slope_of(normal, terrain_.store().facts(), per_map_unit_(centre));
+    if (content.value == PixelValue::kAspect) return aspect_of(slope);
+    if (content.value == PixelValue::kHillshade) return grey_of(content.light.on(slope));
+    return content.in_percent ? percent_of(slope) : degrees_of(slope);
+  }
+
+  const Terrain& terrain_;
+  RasterRequest request_;
   const RasterTarget& target_;
   GDALRasterBand& band_;
   std::function<MapPoint(MapPoint)> per_map_unit_;
-  const std::function<void(double)>& progress_;
-  std::int64_t block_width_ = 0;
-  std::int64_t block_height_ = 0;
-  std::int64_t blocks_done_ = 0;
-  WrittenRaster written_;
-  std::vector<double> values_;
-  std::vector<GridNormal> normals_;  ///< Beside `values_`; empty when these are heights.
+  double rounding_ = 0.0;
 };
 
 /// Refuses options that the driver does not know; GDAL itself only warns of them.
@@ -305,17 +212,18 @@ std::string unit_of(const RasterTarget& target) {
   return {};
 }
 
-GDALDatasetUniquePtr create(const PendingFile& file, const PixelGrid& grid,
+GDALDatasetUniquePtr create(const PendingFile& file, const RasterRequest& request,
                             const RasterTarget& target, const StoreFacts& facts) {
   GDALDriver& driver = driver_named("GTiff");
   const CPLStringList options = options_of(target, false);
   check_creation_options(&driver, options, target.path);
   CPLErrorReset();
-  GDALDatasetUniquePtr dataset(driver.Create(
-      file.temporary().c_str(), static_cast<int>(grid.columns()), static_cast<int>(grid.rows()), 1,
-      type_for(facts, target.content.value), const_cast<char**>(options.List())));
+  GDALDatasetUniquePtr dataset(
+      driver.Create(file.temporary().c_str(), static_cast<int>(request.pixels.width),
+                    static_cast<int>(request.pixels.height), 1,
+                    type_for(facts, target.content.value), const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
-  auto transform = grid.geotransform();
+  auto transform = geotransform_of(request);
   require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
   set_geotiff_crs(*dataset, target.crs.wkt, target.content.value == PixelValue::kHeight,
                   target.path);
@@ -371,31 +279,25 @@ double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-WrittenRaster export_raster(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
+WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
+                            const RasterTarget& target,
                             const std::function<void(double)>& progress) {
-  check_table(grid, target);
-  const GdalCacheLimit cache(target.buffer_bytes);
+  check_table(request.pixels, target);
+  const GdalCacheLimit cache(target.cache_bytes);
   PendingFile file(target.path, target.overwrite);
-  const StoreFacts& facts = parts.terrain().store().facts();
-  WrittenRaster written;
-  if (!target.is_cog) {
-    GDALDatasetUniquePtr dataset = create(file, grid, target, facts);
-    RasterWriter writer(parts, grid, target, *dataset, progress);
-    writer.run();
-    written = writer.written();
-    close_checked(dataset, target.path);
-  } else {
-    const PendingFile raw(target.path + ".raw.tif", true);
-    const std::function<void(double)> first_half = [&](double done) {
-      if (progress) progress(done / 2);
-    };
-    GDALDatasetUniquePtr dataset = create(raw, grid, target, facts);
-    RasterWriter writer(parts, grid, target, *dataset, first_half);
-    writer.run();
-    written = writer.written();
-    close_checked(dataset, target.path);
-    CopyProgress copying{progress, parts.request().limits.stop};
-    copy_as_cog(raw, file, target, copying);
+  std::optional<PendingFile> raw;  // what a COG is copied from
+  if (target.is_cog) raw.emplace(target.path + ".raw.tif", true);
+  const double share = target.is_cog ? 0.5 : 1.0;
+  request.progress = [&](double done) {
+    if (progress) progress(done * share);
+  };
+  GDALDatasetUniquePtr dataset =
+      create(raw ? *raw : file, request, target, terrain.store().facts());
+  const WrittenRaster written = RasterWriter(terrain, request, target, *dataset).run();
+  close_checked(dataset, target.path);
+  if (raw) {
+    CopyProgress copying{progress, request.limits.stop};
+    copy_as_cog(*raw, file, target, copying);
   }
   file.publish();
   return written;

@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
-#include "tools/export/pixel_grid.h"
+#include "engine/query/questions.h"
 #include "tools/slope.h"
 
 namespace ptin::tools {
 
-/// What a pixel tells of the surface at its centre.
+/// What a pixel says of the surface at its centre.
 enum class PixelValue {
   kHeight,
   kSlope,     ///< 0 to 90 degrees, or percent.
@@ -38,8 +37,8 @@ struct RasterTarget {
   double nodata = -9999.0;
   std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; they override ours.
   CrsFacts crs;
-  /// For pixels, and as much again for GDAL's cache.
-  std::uint64_t buffer_bytes = std::uint64_t{64} << 20;
+  /// For GDAL's cache.
+  std::uint64_t cache_bytes = std::uint64_t{64} << 20;
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
 };
 
@@ -51,20 +50,21 @@ struct WrittenRaster {
   std::uint64_t surface_pixels = 0;  ///< Pixels whose centre lies on surface.
 };
 
-/// Samples the TIN of `parts` at the centres of `grid` and writes what `target.content` names.
-/// Heights are Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and
-/// aspects are Float32, hillshades bytes, all three of the normal that sample_normals() gives, over
-/// ground at the pixel's centre. A pixel without surface gets `nodata`, and so does the aspect of
-/// what is flat.
+/// Samples the terrain as `request` says and writes what `target.content` names. Heights are
+/// Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and aspects are
+/// Float32, hillshades bytes, all three of the normal that the raster has at the pixel's centre,
+/// over ground there. A pixel without surface gets `nodata`, and so does the aspect of what is flat.
 ///
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
 /// size of the raster alone. A COG is copied by GDAL, with its overviews, from a GeoTIFF beside it.
+/// @param request   Its rows run to the south. What it asks for, the size of its blocks and its
+///                  progress are set here.
 /// @param progress  Called with the share done, 0 to 1; may be empty.
 /// @throws Error  invalid_argument    GDAL refuses an option, or the output exists
-///                resource_exhausted  what a single pixel needs does not fit the memory; the table
-///                                    of blocks does not fit `table_bytes`; the disk is full
-///                as TinParts::part; io_error; cancelled. Nothing is left behind.
-[[nodiscard]] WrittenRaster export_raster(TinParts& parts, const PixelGrid& grid,
+///                resource_exhausted  the table of blocks does not fit `table_bytes`; the disk is
+///                                    full
+///                as Terrain::raster; io_error; cancelled. Nothing is left behind.
+[[nodiscard]] WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
                                           const RasterTarget& target,
                                           const std::function<void(double)>& progress);
 

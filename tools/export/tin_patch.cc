@@ -29,8 +29,8 @@ int last_corner(const Triangle& t, const std::vector<std::uint64_t>& along) {
 /// What a cell owns, sorted along the curve.
 struct PatchMaker::Sorted {
   std::vector<VertexId> vertices;
-  std::vector<std::uint32_t> rank;  ///< Beside tin.vertices: place in `vertices`, else kNone.
-  /// Beside `vertices`: how many triangles of later cells use each.
+  std::vector<std::uint32_t> rank;  ///< Place of each of tin.vertices in `vertices`, else kNone.
+  /// How many triangles of later cells use each of `vertices`.
   std::vector<std::uint32_t> pending;
   struct Owned {
     std::uint32_t owner;             ///< Rank of the last corner.

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 
 namespace ptin::tools {
@@ -27,7 +27,7 @@ struct TinPatch {
   std::uint64_t first_vertex = 0;       ///< Number of vertices[0], from 0 over the whole TIN.
   std::vector<Point> vertices;
   struct Corner {
-    std::uint64_t number;  ///< Of the vertex, over the whole TIN.
+    std::uint64_t number;  ///< Number of the vertex in the whole TIN.
     VertexId local;        ///< In the part, for point().
   };
   std::vector<std::array<Corner, 3>> triangles;  ///< Counter-clockwise; the last corner first.

@@ -24,7 +24,7 @@ struct SinkTarget {
   bool slope_in_percent = false;                         ///< The field `slope`; else degrees.
   std::uint64_t border_bytes = std::uint64_t{64} << 20;  ///< The most for PatchMaker::make().
   std::uint64_t index_bytes = std::uint64_t{256} << 20;  ///< Bytes for an index of features.
-  std::uint64_t most_triangles = 0;                      ///< At most; tells the size of that index.
+  std::uint64_t most_triangles = 0;                      ///< At most; sets the size of that index.
 };
 
 /// Takes patches in order. Destroyed before publish(), it leaves nothing behind.
@@ -47,7 +47,7 @@ class TinSink {
 [[nodiscard]] std::unique_ptr<TinSink> make_ply_sink(const SinkTarget& target);
 
 /// Triangles as polygons with heights, one feature each, written by GDAL as POLYGON Z, which QGIS
-/// reads in any version. The fields `slope` and `aspect` tell how a triangle lies over ground
+/// reads in any version. The fields `slope` and `aspect` say how a triangle lies over ground
 /// (tools/slope.h), at its middle; `aspect` is null where it is flat. A GeoPackage gets its spatial index when it is finished. A FlatGeobuf gets
 /// one where the index fits `index_bytes` (128 bytes a triangle).
 [[nodiscard]] std::unique_ptr<TinSink> make_geopackage_sink(const SinkTarget& target);

@@ -7,7 +7,7 @@
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 

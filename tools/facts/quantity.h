@@ -20,7 +20,7 @@ struct Quantity {
 /// A length or a height as options take it, of any sign.
 struct Length {
   double number = 0.0;  ///< As written.
-  double metres = 0.0;  ///< Of the unit behind it; 0: there was none.
+  double metres = 0.0;  ///< Length of the unit behind it; 0: there was none.
 
   [[nodiscard]] bool has_unit() const noexcept { return metres > 0; }
   /// The value in a unit of so many metres. The two feet, which differ by two millionths, are one: a

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 

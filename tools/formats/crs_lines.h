@@ -10,8 +10,8 @@
 
 namespace ptin::tools {
 
-/// Lines such as "crs: EPSG:25832", each behind `mark` and with its end. Without a CRS units are told of
-/// plane and heights, with one that of the heights where no vertical CRS tells it.
+/// Lines such as "crs: EPSG:25832", each behind `mark` and with its end. Without a CRS units are
+/// given for plane and heights, with one that of the heights where no vertical CRS gives it.
 [[nodiscard]] std::string crs_lines(const CrsFacts& crs, const std::string& mark);
 
 }  // namespace ptin::tools

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the JSON of a GLB tells of one mesh with normals.
+// What the JSON of a GLB says of one mesh with normals.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ enum class GlbType : std::uint16_t { kUnsignedShort = 5123, kUnsignedInt = 5125,
 struct GlbMeshFacts {
   std::size_t vertices = 0;
   std::size_t indices = 0;
-  GlbType index_type = GlbType::kUnsignedInt;  ///< Of the indices: one of the unsigned ones.
+  GlbType index_type = GlbType::kUnsignedInt;  ///< Type of the indices: one of the unsigned ones.
   std::array<float, 3> low{}, high{};          ///< Around the positions.
 };
 

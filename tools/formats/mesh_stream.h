@@ -27,7 +27,7 @@ class MeshStream {
  public:
   using Point = std::array<double, 3>;  ///< x, y in map units, height.
   struct Corner {
-    std::uint64_t number;  ///< Of the vertex, from 0 in the order in which they were added.
+    std::uint64_t number;  ///< The vertex's number, from 0 in the order of adding.
     Point point;
   };
 

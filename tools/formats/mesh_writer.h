@@ -19,7 +19,7 @@ struct MeshFormat {
   std::string_view extension;                      ///< Lower case, without the dot.
   std::string_view description;                    ///< For --help and error messages.
   void (*write)(const Mesh& mesh, ByteSink& out);  ///< Null where there is `make`.
-  /// Of a format that is written piece by piece; else null.
+  /// Set for a format that is written piece by piece; else null.
   std::unique_ptr<MeshStream> (*make)(const MeshStreamTarget& target);
 };
 

@@ -89,8 +89,8 @@ void create_fields(OGRLayer& layer, const VectorFile::Layer& wanted, const std::
   }
 }
 
-/// How a whole file of a format ends, but for white space, where GDAL's driver does not tell when the
-/// disk is full; else empty.
+/// How a whole file of a format ends, but for white space, where GDAL's driver does not report when
+/// the disk is full; else empty.
 std::string_view end_of_whole_file(const std::string& driver) {
   if (driver == kGeoJson.driver) return "]}";
   return driver == "DXF" ? "EOF" : "";
@@ -220,7 +220,7 @@ void VectorFile::add(std::unique_ptr<OGRGeometry> geometry, std::span<const Valu
 }
 
 /// Closes the dataset, and throws when that fails. GDAL's drivers write most of a file when they
-/// close it, and some tell of a full disk only by an error message then.
+/// close it, and some report a full disk only by an error message then.
 void VectorFile::close() {
   const UnsafeSqlite unsafe;
   CPLErrorReset();

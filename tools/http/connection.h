@@ -32,7 +32,7 @@ struct ConnectionHost {
   const Limits& limits;
   Service& service;
   Admission& admission;
-  Turns& turns;  ///< Of answers that take more than one piece.
+  Turns& turns;  ///< Turns of answers that take more than one piece.
   std::uint64_t next_request = 1;
   /// The one body that waits for memory and goes on beyond their share: else many that have a part of
   /// theirs might wait for each other.
@@ -56,7 +56,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// @param is_extra  One more than the server takes: it is answered what is quick, and told that
+  /// @param is_extra  One more than the server takes: it is answered what is quick, and hears that
   ///                  there are too many, and closed.
   void start(bool is_extra);
   /// The connection ends when it waits for a request, or else after the answer at hand.

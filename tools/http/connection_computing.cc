@@ -155,7 +155,7 @@ void Connection::look_for_hang_up() {
   give_up(GivenUp::kHungUp);
 }
 
-/// Where further bytes wait, only the system's own state of the socket tells: it is looked at.
+/// Where further bytes wait, only the system's own state of the socket shows: it is looked at.
 void Connection::look_again_for_hang_up() {
   look_.expires_after(kBetweenLooks);
   look_.async_wait([self = shared_from_this(), id = request_->id](const Status& status) {

@@ -11,7 +11,7 @@ namespace ptin::http {
 
 namespace {
 
-/// Descriptors of files that are opened for an answer, and of connections that are told that
+/// Descriptors of files that are opened for an answer, and of connections that hear that
 /// there are too many.
 constexpr std::size_t kKept = 64;
 

@@ -12,7 +12,7 @@
 
 namespace ptin::http {
 
-/// Every one is told to a client that goes beyond it, under its name here.
+/// Every one is named to a client that goes beyond it, under its name here.
 struct Limits {
   std::size_t request_line_bytes = std::size_t{32} << 10;  ///< Beyond: 414.
   std::size_t header_bytes = std::size_t{8} << 10;         ///< All header lines. Beyond: 431.
@@ -32,7 +32,7 @@ struct Limits {
   std::chrono::milliseconds reading{5000};     ///< The head, and again the body. Beyond: 408.
   std::chrono::milliseconds queueing{10000};   ///< Until a question's turn comes. Beyond: 503.
   std::chrono::milliseconds computing{10000};  ///< From its turn on. Beyond: 503.
-  std::chrono::milliseconds writing{10000};    ///< Of each 64 KiB. Beyond: the connection closes.
+  std::chrono::milliseconds writing{10000};    ///< For each 64 KiB. Beyond: the connection closes.
   /// A client takes an answer that memory is held for at this rate at least, beside `writing`.
   std::uint64_t least_bytes_a_second = std::uint64_t{32} << 10;
   std::chrono::milliseconds idle{15000};  ///< Between two requests.

@@ -17,8 +17,8 @@ namespace ptin::http {
 
 /// The use that memory is lent for.
 enum class MemoryUse : std::uint8_t {
-  kQuestion,  ///< Of a tile or a sweep, or a piece of a file: while it is computed.
-  kPoint,     ///< Of the lane of points: while it is computed.
+  kQuestion,  ///< A tile, a sweep or a piece of a file: while it is computed.
+  kPoint,     ///< A question in the lane of points: while it is computed.
   kAnswer,    ///< Until its last byte is written: a client may take its time.
   kBody       ///< While it arrives, and until its question is answered.
 };

@@ -31,7 +31,7 @@ Response Problem::response() const {
   Response response;
   response.status = status_;
   response.content_type = kProblemJson;
-  // What a client sent may be no UTF-8: such bytes are told as U+FFFD.
+  // What a client sent may be no UTF-8: such bytes are written as U+FFFD.
   response.body = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   if (retry_after_) response.add("Retry-After", std::to_string(*retry_after_));
   if (!methods_.empty()) response.add("Allow", methods_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is wrong with a request, as RFC 9457 tells it.
+// What is wrong with a request, as RFC 9457 says it.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ constexpr std::string_view kProblemJson = "application/problem+json";
 /// A request that is refused. Thrown where that is known, and answered where requests are.
 class Problem : public std::exception {
  public:
-  /// @param status  Of HTTP, 400 to 599.
+  /// @param status  Status of HTTP, 400 to 599.
   /// @param detail  One sentence: what is wrong, what was expected, what to do.
   Problem(unsigned status, std::string detail) : status_(status), detail_(std::move(detail)) {}
 
@@ -38,12 +38,12 @@ class Problem : public std::exception {
     methods_ = std::move(methods);
     return std::move(*this);
   }
-  /// Tells how long the file is of which a range was asked for.
+  /// States how long the file is of which a range was asked for.
   Problem&& of_bytes(std::uint64_t bytes) && {
     whole_bytes_ = bytes;
     return std::move(*this);
   }
-  /// Tells when to come again.
+  /// States when to come again.
   Problem&& retry_after(unsigned seconds) && {
     retry_after_ = seconds;
     return std::move(*this);

@@ -12,15 +12,15 @@ namespace {
 
 /// The time as RFC 9110 has it. The one thread of connections asks.
 const std::string& date_now() {
-  static std::time_t told = 0;
+  static std::time_t written = 0;
   static std::string text;
-  if (const std::time_t now = std::time(nullptr); now != told) {
+  if (const std::time_t now = std::time(nullptr); now != written) {
     std::tm parts{};
     ::gmtime_r(&now, &parts);
     std::array<char, 40> date{};
     std::strftime(date.data(), date.size(), "%a, %d %b %Y %H:%M:%S GMT", &parts);
     text = date.data();
-    told = now;
+    written = now;
   }
   return text;
 }

@@ -57,7 +57,7 @@ class Service {
   /// Called on one of the threads for computing, some time after the last long question: the time to
   /// give memory back.
   virtual void rest() noexcept {}
-  /// Told once for every request.
+  /// Called once for every request.
   virtual void note(const Served& served) noexcept = 0;
 };
 

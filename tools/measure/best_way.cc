@@ -31,7 +31,7 @@ std::optional<LogMedian> log_median_of(const Readings& readings) {
   for (const Reading& r : readings.all()) {
     squares += (log_of(r.seconds) - mean) * (log_of(r.seconds) - mean);
   }
-  // One or two places do not tell how far others are from them: by a factor of e, say.
+  // One or two places do not show how far others are from them: by a factor of e, say.
   const double spread = n < 3 ? 1.0 : squares / (n - 1);
   constexpr double kMedianOverMean = 1.5708;  // of the squares of their errors, of normal values
   return LogMedian{log_of(*median), kMedianOverMean * spread / n};

@@ -11,10 +11,6 @@ Deadline::Deadline(double seconds, std::stop_token caller)
       of_caller_(caller_, Fire{source_}),
       timer_([this, seconds](const std::stop_token& done) { wait(done, seconds); }) {}
 
-double Deadline::elapsed() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-}
-
 void Deadline::wait(const std::stop_token& done, double seconds) {
   constexpr double kLongest = 1e8;  // three years; the clock holds them
   const std::chrono::duration<double> length(std::min(seconds, kLongest));

@@ -12,6 +12,11 @@
 
 namespace ptin::tools {
 
+/// Seconds on the clock.
+[[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 /// Begins when it is made. Threads: const functions may be called at once.
 class Deadline {
  public:
@@ -26,7 +31,7 @@ class Deadline {
     return source_.stop_requested() && !caller_.stop_requested();
   }
   /// Seconds since it was made.
-  [[nodiscard]] double elapsed() const;
+  [[nodiscard]] double elapsed() const { return seconds_since(begin_); }
 
  private:
   void wait(const std::stop_token& done, double seconds);

@@ -18,21 +18,16 @@
 
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "tools/measure/deadline.h"
 #include "tools/measure/quantiles.h"
 
 namespace ptin::tools {
 
 namespace {
 
-using DeviceClock = std::chrono::steady_clock;
-
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr std::size_t kReadBytes = 4096;
 constexpr double kPassSeconds = 1.0, kRandomSeconds = 1.0;
-
-double seconds_since(DeviceClock::time_point begin) {
-  return std::chrono::duration<double>(DeviceClock::now() - begin).count();
-}
 
 /// A descriptor, closed when it goes.
 struct DirectFile {
@@ -60,7 +55,7 @@ AlignedBuffer aligned_buffer() {
 /// Bytes a second that 8 readers reach over the first blocks, for at most kPassSeconds; 0 when a
 /// read fails.
 double read_in_order(const DirectFile& file, std::uint64_t blocks, const std::stop_token& stop) {
-  const auto begin = DeviceClock::now();
+  const auto begin = std::chrono::steady_clock::now();
   std::atomic<std::uint64_t> next{0}, bytes{0};
   std::atomic<bool> has_failed{false};
   {
@@ -86,11 +81,11 @@ std::vector<double> read_anywhere(const DirectFile& file, const std::stop_token&
   const AlignedBuffer buffer = aligned_buffer();
   std::mt19937_64 random(1);
   std::vector<double> spent;
-  const auto begin = DeviceClock::now();
+  const auto begin = std::chrono::steady_clock::now();
   while (spent.size() < 400 && (spent.size() < 10 || seconds_since(begin) < kRandomSeconds)) {
     stop_if_asked(stop, "the benchmark");
     const auto at = static_cast<off_t>(random() % (file.bytes / kReadBytes) * kReadBytes);
-    const auto asked = DeviceClock::now();
+    const auto asked = std::chrono::steady_clock::now();
     if (::pread(file.fd, buffer.get(), kReadBytes, at) < 0) return {};
     spent.push_back(seconds_since(asked));
   }
@@ -105,7 +100,7 @@ std::optional<DeviceSpeed> measure_device(const std::string& path, const std::st
   if (file.bytes < kReadBytes) return {};
   const std::uint64_t blocks = std::clamp<std::uint64_t>(file.bytes / kBlockBytes, 1, 512);
   DeviceSpeed speed;
-  const auto begin = DeviceClock::now();
+  const auto begin = std::chrono::steady_clock::now();
   for (int pass = 0; pass < 5 && seconds_since(begin) < 2 * kPassSeconds; ++pass) {
     stop_if_asked(stop, "the benchmark");
     speed.sequential_mb_s =

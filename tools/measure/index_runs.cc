@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/measure/index_runs.h"
-
 #include <algorithm>
 #include <cerrno>
 #include <memory>
@@ -15,6 +13,7 @@
 #include "storage/index_shape.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
+#include "tools/measure/io_run.h"
 #include "tools/measure/part_time.h"
 #include "tools/output/temporary_path.h"
 
@@ -42,7 +41,7 @@ class SecondIndex {
                                                                 : request.temporary_folder)) {
     const auto begin = std::chrono::steady_clock::now();
     static_cast<void>(open(store, request.memory_bytes));
-    build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    build_seconds = seconds_since(begin);
     for (const char* end : {".dat", ".idx"}) {
       caches_.push_back(std::make_unique<FileCache>(base() + end));
       bytes += caches_.back()->file_bytes();

@@ -25,14 +25,14 @@ struct IoRequest {
   /// About how long all of it takes. It may take twice as long: a question that is under way is
   /// finished, unless it lasts beyond that.
   double seconds = 60.0;
-  std::uint64_t most_times = 200;   ///< Of each question by each way; >= 1.
+  std::uint64_t most_times = 200;   ///< Most runs of a question by each way; >= 1.
   int most_threads = 1;             ///< >= 1.
   std::optional<double> tolerance;  ///< As DetailRequest::tolerance, of every question.
-  std::uint64_t memory_bytes = kMemoryOfQuestion;  ///< Of a question, and of the second index.
+  std::uint64_t memory_bytes = kMemoryOfQuestion;  ///< For a question, and for the second index.
   /// Where the second index is for as long as it is measured. Empty: beside the file.
   std::string temporary_folder;
   std::stop_token stop;
-  /// Called with a stage and its share done, 0 to 1; may throw. None: nobody is told.
+  /// Called with a stage and its share done, 0 to 1; may throw. None: it is not.
   std::function<void(const char* stage, double share)> progress;
 };
 
@@ -58,7 +58,7 @@ class Readings {
   [[nodiscard]] double mean_nodes() const;
   [[nodiscard]] double mean_asked_bytes() const;  ///< Pages and nodes that were read.
   [[nodiscard]] double mean_major_faults() const;
-  /// None where the system does not tell, or there is no reading.
+  /// None where the system does not say, or there is no reading.
   [[nodiscard]] std::optional<double> mean_device_bytes() const;
 
  private:
@@ -88,7 +88,7 @@ struct ThreadFigures {
   QuestionKind kind = QuestionKind::kPoint;
   ReadWay way = ReadWay::kAnnounced;
   int threads = 1;
-  std::uint64_t questions = 0;                           ///< Of one run.
+  std::uint64_t questions = 0;                           ///< Questions of one run.
   std::vector<double> cold_per_second, warm_per_second;  ///< Questions; one number a run.
   std::uint64_t not_cold = 0;                            ///< Runs that are in no figure.
 };
@@ -102,10 +102,10 @@ struct SearchFigures {
 struct IndexFigures {
   std::vector<SearchFigures> searches;
   std::string why_no_second;       ///< Empty: there is a second index.
-  double build_seconds = 0.0;      ///< Of the second index.
+  double build_seconds = 0.0;      ///< Time to build the second index.
   std::uint64_t bytes = 0;         ///< Its files.
-  std::uint64_t packed_bytes = 0;  ///< Of the packed R-tree, in the file.
-  std::string why_not_cold;        ///< Of the second index; empty: it was cold.
+  std::uint64_t packed_bytes = 0;  ///< Bytes of the packed R-tree in the file.
+  std::string why_not_cold;        ///< Why the second index was not cold; empty: it was.
 };
 
 struct IoReport {
@@ -114,7 +114,7 @@ struct IoReport {
   std::optional<DeviceSpeed> device;
   std::string why_not_cold;       ///< Empty: cold figures are there.
   std::string why_no_uring;       ///< Empty: figures of io_uring are there.
-  bool has_device_bytes = false;  ///< The system tells what it reads from the device.
+  bool has_device_bytes = false;  ///< The system reports what it reads from the device.
   std::vector<OpeningFigures> opening;
   std::vector<QuestionFigures> questions;
   std::vector<ThreadFigures> threads;

@@ -21,7 +21,7 @@ IoRun::IoRun(const IoRequest& request)
   has_device_bytes_ = why_not_cold_.empty() && find_device_bytes();
 }
 
-/// Whether the system tells of bytes that certainly come from a device: network file systems have
+/// Whether the system counts bytes that certainly come from a device: network file systems have
 /// none.
 bool IoRun::find_device_bytes() {
   if (!make_cold()) return false;

@@ -4,10 +4,7 @@
 #include <chrono>
 
 #include "tools/measure/device_speed.h"
-#include "tools/measure/index_runs.h"
 #include "tools/measure/io_run.h"
-#include "tools/measure/question_runs.h"
-#include "tools/measure/thread_runs.h"
 
 namespace ptin::tools {
 
@@ -27,7 +24,7 @@ IoReport measure_io(const IoRequest& request) {
   run_questions(run, 0.65 * request.seconds, report);
   run_threads(run, 0.15 * request.seconds, report);
   run_indexes(run, 0.15 * request.seconds, report);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  report.seconds = seconds_since(begin);
   return report;
 }
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/measure/deadline.h"
 #include "tools/measure/io_report.h"
 

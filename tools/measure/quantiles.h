@@ -10,8 +10,8 @@
 namespace ptin::tools {
 
 /// Each is one of the values: the smallest that so many of them do not exceed (nearest rank). A
-/// percentile is told where at least two values lie behind it: the 95th of 40 values or more, the
-/// 99th of 200 or more. The median is told of any number.
+/// percentile is given where at least two values lie behind it: the 95th of 40 values or more, the
+/// 99th of 200 or more. The median is given for any number.
 struct Quantiles {
   std::size_t count = 0;
   std::optional<double> median, p95, p99;

@@ -154,7 +154,7 @@ Question Questions::make(QuestionKind kind, std::uint64_t number, const Terrain&
   question.window = {low.x, low.y, high.x, high.y};
   if (kind == QuestionKind::kSight) question.to = draw();
   if (kind == QuestionKind::kIsoline25th) {
-    const double height = terrain.locate(std::span(&question.at, 1)).points[0].height;
+    const double height = terrain.locate(std::span(&question.at, 1), {}).points[0].height;
     question.level = std::isfinite(height) ? height : (facts_.min_height + facts_.max_height) / 2;
     if (!std::isfinite(question.level)) question.level = 0;
   }

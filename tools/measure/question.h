@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 
@@ -16,8 +16,8 @@ enum class QuestionKind : std::uint8_t {
   kPoint,          ///< The height at one place.
   kSight,          ///< Whether two places see each other, 2 units of height above ground.
   kWindow10000th,  ///< The triangles of a window of 1/10 000 of the bounding box.
-  kWindow400th,    ///< Of 1/400.
-  kWindow25th,     ///< Of 1/25.
+  kWindow400th,    ///< A window of 1/400.
+  kWindow25th,     ///< A window of 1/25.
   kIsoline25th,    ///< The isoline of the height in the middle of a window of 1/25.
 };
 inline constexpr std::array kQuestionKinds = {
@@ -30,8 +30,8 @@ inline constexpr std::array kQuestionKinds = {
 struct Question {
   QuestionKind kind = QuestionKind::kPoint;
   MapPoint at{}, to{};  ///< The place, or the middle of the window; of a sight line its ends.
-  Window window{};      ///< Of windows and isolines; reaches beyond the terrain nowhere.
-  double level = 0.0;   ///< Of an isoline.
+  Window window{};      ///< Window of windows and isolines; within the terrain.
+  double level = 0.0;   ///< Level of an isoline.
 };
 
 /// What an answer cost, and a number that tells different answers apart.

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/measure/question_runs.h"
-
 #include <algorithm>
 
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "tools/measure/io_run.h"
 #include "tools/measure/part_time.h"
 
 namespace ptin::tools {
@@ -14,7 +13,7 @@ namespace {
 /// The rounds of one kind of question.
 struct Rounds {
   QuestionKind kind;
-  std::size_t first_row;  ///< Of its rows, one a way, in the report.
+  std::size_t first_row;  ///< First of its rows in the report, one a way.
   std::uint64_t done = 0;
   double seconds = 0.0;
   bool is_over = false;

@@ -8,12 +8,12 @@
 #include <memory>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 
 enum class ReadWay : std::uint8_t {
-  kAnnounced,  ///< Mapped; the kernel is told what is read next. What `ptin` does by itself.
+  kAnnounced,  ///< Mapped; reads are announced to the kernel. What `ptin` does by itself.
   kFaults,     ///< Mapped, and nothing is announced: each page waits for a fault of its own.
   kPread,      ///< By pread, announced. `--no-mmap`.
   kUring,      ///< Mapped; what is read next comes through io_uring.

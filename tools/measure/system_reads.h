@@ -11,7 +11,7 @@ namespace ptin::tools {
 /// Counts of the process since it began, or between two moments.
 struct SystemReads {
   /// read_bytes of /proc/self/io: bytes asked of the block layer, read-ahead included. None where
-  /// the system does not tell.
+  /// the system does not say.
   std::optional<std::uint64_t> device_bytes;
   std::uint64_t major_faults = 0;  ///< Faults that waited for the device.
 

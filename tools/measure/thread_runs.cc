@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/measure/thread_runs.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -13,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "tools/measure/io_run.h"
 #include "tools/measure/part_time.h"
 
 namespace ptin::tools {
@@ -81,7 +80,7 @@ class ThreadRuns {
   IoRun& run_;
   IoReport& report_;
   PartTime time_;
-  std::uint64_t numbers_ = 0;  ///< Of questions that were asked.
+  std::uint64_t numbers_ = 0;  ///< Number of questions asked.
 };
 
 void ThreadRuns::run_once(ThreadFigures& figures, std::uint64_t first_number) {
@@ -137,8 +136,7 @@ double ThreadRuns::ask_all(const ThreadFigures& figures, std::span<const Questio
   all_here.arrive_and_wait();
   const auto begin = std::chrono::steady_clock::now();
   threads.clear();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = seconds_since(begin);
   if (failure) std::rethrow_exception(failure);
   return seconds;
 }

@@ -19,7 +19,7 @@ namespace ptin::tools {
 /// Holds 8 MiB. Threads take turns.
 class UringAnnouncer final : public Announcer {
  public:
-  /// @throws Error io_error  what why_no_uring() tells
+  /// @throws Error io_error  what why_no_uring() says
   UringAnnouncer();
   ~UringAnnouncer() override;  ///< Waits for what is under way.
 

@@ -29,7 +29,7 @@ void finish_stdout() {
   if (std::fflush(stdout) != 0) throw_lost(errno);
   if (std::ferror(stdout) == 0) return;
   // An earlier write failed, and its errno is gone. What is there is a part of the answer already,
-  // so one byte more is written, which tells whether the disk is full.
+  // so one byte more is written, which shows whether the disk is full.
   errno = 0;
   static_cast<void>(::write(STDOUT_FILENO, "\n", 1) == 1);
   throw_lost(errno);

@@ -210,7 +210,7 @@ class Canvas::Impl {
   bool overwrite_;
   int width_, height_;
   PictureFormat format_;
-  std::string bytes_;  ///< Of the file; before the surface, which writes them.
+  std::string bytes_;  ///< Bytes of the file; declared before the surface, which writes them.
   Surface surface_;
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
 };

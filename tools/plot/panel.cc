@@ -21,7 +21,7 @@ constexpr double kBandOpacity = 0.35;
 constexpr double kStationRadius = 2.4;
 const Stroke kHatch{kVoid, 1.0, 0.8};
 
-/// Of the points in each half of a pixel's column: the first, the lowest, the highest and the last.
+/// The first, lowest, highest and last of the points in each half of a pixel's column.
 std::vector<CanvasPoint> thinned(std::vector<CanvasPoint> points) {
   std::vector<CanvasPoint> kept;
   const auto column_of = [](const CanvasPoint& p) { return std::floor(2 * p.x); };

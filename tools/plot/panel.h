@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/plot/axis.h"
 #include "tools/plot/canvas.h"
 
@@ -24,7 +24,7 @@ struct PlotUnits {
 /// What the panels of a picture have in common.
 struct PanelScales {
   double length = 1.0;  ///< At the right end of the axis of distances; > 0.
-  double low = 0.0;     ///< Of the axis of heights; below `high`.
+  double low = 0.0;     ///< Lower end of the axis of heights; below `high`.
   double high = 1.0;
   ShownUnit lengths, heights;
   std::string across = "distance", up = "height";  ///< What the axes are of.
@@ -48,7 +48,7 @@ struct LegendEntry {
 [[nodiscard]] LegendEntry line_entry(const Stroke& stroke, std::string text);
 [[nodiscard]] LegendEntry void_entry();
 [[nodiscard]] LegendEntry station_entry();
-/// Of the band that a certificate gives.
+/// The entry of the band that a certificate gives.
 [[nodiscard]] LegendEntry deviation_entry(double deviation, const ShownUnit& heights);
 /// How much steeper slopes look than they are: "heights 12 times exaggerated", or "0.5 of their true
 /// scale".

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/plot/panel.h"
 
 namespace ptin::tools {
@@ -17,7 +17,7 @@ namespace ptin::tools {
 
 /// Writes the plot. Distances of all lines begin at 0 and have one scale, and so have heights.
 /// @param path  A name of is_picture_name().
-/// @param ids   Of each line of the request, its title; empty: lines are titled by their numbers.
+/// @param ids   Title of each line of the request; empty: lines are titled by their numbers.
 /// @throws Error as Canvas, as require_panels
 void plot_profile(const std::string& path, bool overwrite, const ProfileResult& profile,
                   const std::vector<std::string>& ids, const PlotUnits& units);

@@ -15,8 +15,8 @@ namespace ptin::tools {
 /// A logarithmic scale with round ends.
 class LogScale {
  public:
-  /// A scale that holds all of the values; those that are not above 0 do not count. Of no value: 1 to
-  /// 10.
+  /// A scale that holds all of the values; those that are not above 0 do not count. Without any: 1
+  /// to 10.
   explicit LogScale(const std::vector<double>& values);
 
   struct Tick {

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/plot/panel.h"
 
 namespace ptin::tools {

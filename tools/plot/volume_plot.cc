@@ -26,7 +26,7 @@ struct AmountAt {
 struct AmountCurve {
   std::string title;
   std::string axis;
-  const char* power;  ///< Of lengths: "²" or "³".
+  const char* power;  ///< Power of lengths: "²" or "³".
   Colour colour;
   std::vector<AmountAt> amounts;  ///< By rising levels.
 

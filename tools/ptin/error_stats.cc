@@ -9,15 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/crs/crs_facts.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 
 std::uint64_t vertices_at(const StoreFile& store, double tolerance) {
-  std::uint64_t count = store.t0().vertices.size();
-  for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.upper > tolerance) count += bin.records;
-  }
-  return count;
+  return store.t0().vertices.size() + records_above(store, tolerance);
 }
 
 double error_quantile(const StoreFile& store, double share) {

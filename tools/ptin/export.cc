@@ -12,9 +12,10 @@
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/memory_units.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
+#include "tools/export/pixel_grid.h"
 #include "tools/export/raster_export.h"
 #include "tools/export/tin_sink.h"
 #include "tools/facts/answers.h"
@@ -188,27 +189,30 @@ Exported export_triangles(TinParts& parts, const ExportFormat& format, const Sin
 }
 
 /// The pixels that were asked for.
-PixelGrid grid_of(const ExportOptions& options, const std::optional<Region>& region,
-                  const StoreFile& store, const CrsFacts& crs) {
+RasterRequest pixels_of(const ExportOptions& options, const std::optional<Region>& region,
+                        const StoreFile& store, const CrsFacts& crs, const Context& context) {
   std::optional<Window> window;
   if (region) window = std::get<Window>(*region);
   const std::array<double, 2> size = options.pixel_size.empty()
                                          ? own_pixel_size(store)
                                          : pixel_size_of(pixel_sides_of(options.pixel_size), crs,
                                                          middle_of(window, store.facts()));
-  return {store.facts(), size, window};
+  RasterRequest request = pixels_in(window, size, store.facts());
+  request.detail = detail_of(options.detail);
+  request.limits.memory_bytes = memory_of(options).part;
+  request.limits.stop = context.stop;
+  return request;
 }
 
-Exported export_pixels(TinParts& parts, const PixelGrid& grid, const RasterTarget& target,
-                       const Report& report) {
+Exported export_pixels(const Terrain& terrain, const RasterRequest& request,
+                       const RasterTarget& target, const Report& report) {
   Exported made;
-  const WrittenRaster written = export_raster(parts, grid, target, report);
+  const WrittenRaster written = export_raster(terrain, request, target, report);
   made.rounding = written.rounding;
   made.surface_pixels = written.surface_pixels;
-  made.columns = grid.columns();
-  made.rows = grid.rows();
-  const std::array<double, 6> transform = grid.geotransform();
-  made.pixel_size = {transform[1], -transform[5]};
+  made.columns = request.pixels.width;
+  made.rows = request.pixels.height;
+  made.pixel_size = {request.lattice.step_x, -request.lattice.step_y};
   return made;
 }
 
@@ -288,8 +292,8 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   const AskedRegion asked = region_of(options.region, store.facts(), crs);
   tell_transformed(asked.transformed, "the polygon", crs, context);
   const bool is_raster = format.make_sink == nullptr;
-  std::optional<PixelGrid> grid;
-  if (is_raster) grid.emplace(grid_of(options, asked.region, store, crs));
+  std::optional<RasterRequest> pixels;
+  if (is_raster) pixels = pixels_of(options, asked.region, store, crs, context);
   TinParts parts = terrain.parts(request_of(options, format, asked.region, context));
   Progress progress(Progress::style_for(context.quiet, stderr));
   const Report report = [&](double done) {
@@ -302,7 +306,7 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   const std::uint64_t lone_samples = source_count(store, "lone_samples");
   Exported made;
   if (is_raster) {
-    made = export_pixels(parts, *grid, raster_target(format, options, store), report);
+    made = export_pixels(terrain, *pixels, raster_target(format, options, store), report);
     progress.finish();
     if (!context.quiet && made.surface_pixels == 0 && has_surface(store)) {
       std::fprintf(stderr,

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/formats/mesh.h"
 #include "tools/region/straight_sides.h"
 

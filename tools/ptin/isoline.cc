@@ -12,7 +12,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/mesh/link.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/file/file_questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
@@ -105,7 +105,7 @@ void report(const IsolineOptions& options, const Isolines& lines,
 
 int run_lines(const IsolineOptions& options, const IsolineRequest& request,
               const AskedTerrain& asked, const Context& context) {
-  const Isolines lines = asked.terrain.isolines(request);
+  const Isolines lines = asked.terrain.isolines(request, options.by);
   const IndexLevels index{options.levels.interval.value_or(0.0), options.levels.base};
   IsolineLayer layer(
       {options.output, options.overwrite, options.z, false, asked.crs, index, context.stop});
@@ -269,7 +269,6 @@ int run_isoline(const IsolineOptions& options, const Context& context) {
   request.temporary_folder = folder_for_temporaries(options);
   request.threads = thread_count(options.threads);
   request.limits.stop = context.stop;
-  request.by = options.by;
   request.counts_vertices = context.json;
   const AskedTerrain asked{terrain, crs, region.transformed};
   return options.polygons ? run_polygons(options, request, asked, context)

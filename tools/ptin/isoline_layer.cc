@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/stop.h"
 #include "tools/output/file_name.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/formats/dxf_units.h"
 #include "tools/formats/land_xml_contours.h"
 #include "tools/formats/vector_file.h"

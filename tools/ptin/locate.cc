@@ -11,7 +11,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/numbers.h"
@@ -131,8 +131,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
   LocateRequest request;
   request.detail = detail_of(options.detail);
   request.limits = limits_of(options.memory, context);
-  request.by = options.by;
-  const LocateResult result = terrain.locate(asked.all, request);
+  const LocateResult result = terrain.locate(asked.all, request, options.by);
   warn_of_outside(asked.all, "point", terrain.store().facts(), crs, context);
   if (form == AnswerForm::kLayer) write_layer(options.answer, asked, result, crs);
   if (form == AnswerForm::kCsv || !context.json) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 #include "tools/facts/quantity.h"
 

@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "engine/geometry/affine.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/region/vector_input.h"
 

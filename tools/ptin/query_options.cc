@@ -10,7 +10,7 @@
 
 #include "engine/construct/process_limits.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/remote/remote_file.h"
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"

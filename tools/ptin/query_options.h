@@ -15,7 +15,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/memory_units.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/measures.h"
 #include "tools/region/on_terrain.h"

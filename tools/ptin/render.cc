@@ -51,14 +51,6 @@ Window whole_window(const StoreFacts& facts) {
   return {low.x, low.y, high.x, high.y};
 }
 
-/// The part of the window that lies in the terrain, as a share of the terrain's area.
-double share_of(const Window& w, const Window& whole) {
-  const double width = std::min(w.max_x, whole.max_x) - std::max(w.min_x, whole.min_x);
-  const double height = std::min(w.max_y, whole.max_y) - std::max(w.min_y, whole.min_y);
-  if (width <= 0 || height <= 0) return 0.0;
-  return width * height / ((whole.max_x - whole.min_x) * (whole.max_y - whole.min_y));
-}
-
 constexpr int kSupersampling = 2;
 
 /// The memory that is left for the TIN beside the picture, in bytes.
@@ -80,15 +72,17 @@ std::uint64_t memory_beside_picture(const RenderOptions& options, const View& vi
 
 /// A tolerance at which the TIN has at most a few vertices a pixel: none where the full TIN has no
 /// more, else the smallest round tolerance that does.
-std::optional<double> tolerance_for(const StoreFile& store, double share, const View& view) {
-  const double budget = std::max(300'000.0, 2.0 * view.width * view.height);
-  const auto vertices = static_cast<double>(store.t0().vertices.size() + store.record_count());
-  if (share * vertices <= budget) return std::nullopt;
+std::optional<double> tolerance_for(const StoreFile& store, const Window& window,
+                                    const View& view) {
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
+  IoCounters io;
+  const std::optional<double> least =
+      detail_for(store, std::max<std::uint64_t>(300'000, 2 * pixels), window, io).tolerance;
+  if (!least) return std::nullopt;
   const std::vector<double> tolerances = round_tolerances(store, 60);
-  for (const double tolerance : tolerances) {
-    if (share * static_cast<double>(vertices_at(store, tolerance)) <= budget) return tolerance;
-  }
-  return tolerances.empty() ? 0.0 : tolerances.back();
+  const auto round = std::lower_bound(tolerances.begin(), tolerances.end(), *least);
+  return round != tolerances.end() ? *round : *least;
 }
 
 View view_of(const RenderOptions& options, const Window& window, const CrsFacts& crs) {
@@ -143,16 +137,14 @@ int run_render(const RenderOptions& options, const Context& context) {
   const StoreFile& store = terrain.store();
   const CrsFacts crs = crs_facts(store);
   const std::optional<Region> region = region_of(options.region, store.facts(), crs).region;
-  const Window whole = whole_window(store.facts());
-  const Window window = region ? std::get<Window>(*region) : whole;
+  const Window window = region ? std::get<Window>(*region) : whole_window(store.facts());
   const View view = view_of(options, window, crs);
 
   RefineRequest request;
   request.limits.memory_bytes = memory_beside_picture(options, view);
   if (region) request.region = visible_window(view);
   request.detail.tolerance =
-      options.error ? options.error
-                    : tolerance_for(store, share_of(visible_window(view), whole), view);
+      options.error ? options.error : tolerance_for(store, visible_window(view), view);
   request.form = ResultForm::kMeetingRegion;
   request.page_of_triangle = options.pages;
   request.limits.stop = context.stop;

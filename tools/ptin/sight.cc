@@ -18,7 +18,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -103,7 +103,6 @@ SightRequest request_of(const SightOptions& options, const Ground& ground, const
   request.detail = detail_of(options.detail);
   request.limits.memory_bytes = memory_limit_of(options.memory);
   request.budget = options.budget;
-  request.by = options.by;
   request.verdict_only = options.verdict_only;
   request.limits.stop = context.stop;
   return request;
@@ -283,8 +282,8 @@ int run_sight(const SightOptions& options, const Context& context) {
   SightAnswers answers(options, asked, context, crs);
   if (answers.are_plotted()) require_panels(asked.all.size(), "pairs", options.answer.output);
   const std::string unit = unit_of_ground(crs);
-  SightSolver solver =
-      terrain.sight_lines(request, asked.all.size() < kFewPairs ? 0 : SightSolver::kCoarseRecords);
+  SightSolver solver = terrain.sight_lines(
+      request, asked.all.size() < kFewPairs ? 0 : SightSolver::kCoarseRecords, options.by);
   for (const SightPair& pair : asked.all) {
     SightResult result = solver.solve(pair);
     if (options.pairs.empty()) result.cost.add_counts(solver.base_cost());

@@ -3,7 +3,7 @@
 // Whether there is a surface, from what the build counted of its source.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/facts/source_count.h"
 
 namespace ptin::tools {

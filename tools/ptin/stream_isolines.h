@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/isoline_layer.h"
 #include "tools/ptin/query_options.h"

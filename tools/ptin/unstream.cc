@@ -12,7 +12,7 @@
 
 #include "engine/crs/border_move.h"
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/stop.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"

@@ -51,9 +51,15 @@ struct Findings {
   std::optional<AgainstReport> against;
 };
 
-/// The CRS must be one that outputs can name.
+/// The CRS must be one that outputs can name, and the facts beside its text those of the text.
 void verify_crs(const Terrain& terrain, Findings& findings) {
   const std::string wkt = crs_facts(terrain.store()).wkt;
+  const nlohmann::json metadata = metadata_of(terrain.store());
+  const nlohmann::json crs = metadata.value("crs", nlohmann::json());
+  if (crs.is_object() && crs.contains("facts") && crs["facts"] != json_of(crs_facts(wkt))) {
+    findings.faults.push_back(
+        {"the facts of its CRS are not those of the CRS's text", "section \"metadata\""});
+  }
   if (wkt.empty()) return;
   OGRSpatialReference srs;
   char* text = nullptr;

@@ -16,7 +16,7 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/stop.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"

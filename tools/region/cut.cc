@@ -2,7 +2,10 @@
 #include "tools/region/cut.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "tools/region/cut_mesh.h"
@@ -11,10 +14,13 @@ namespace ptin::tools {
 
 namespace {
 
-struct Ring {
-  std::vector<LatticePoint> lattice;
-  std::vector<std::array<double, 2>> map;
-};
+using Ring = std::vector<BorderCorner>;
+
+/// How far a polygon may reach, grid units: side() of spots is exact up to there.
+constexpr double kFarthest = 0x1p38;
+/// A side of a window outside of the terrain cuts nothing, wherever it is: it is moved to so many
+/// grid units beside the terrain.
+constexpr double kBeside = 16.0;
 
 CutMesh cut_mesh_of(const Tin& tin, const StoreFacts& facts) {
   CutMesh mesh;
@@ -23,7 +29,7 @@ CutMesh cut_mesh_of(const Tin& tin, const StoreFacts& facts) {
     const GridPoint p = tin.position(v);
     const MapPoint map = facts.map.to_map(p.x, p.y);
     CutNode& node = mesh.nodes[v];
-    node.at = {std::int64_t{p.x} << 22, std::int64_t{p.y} << 22};
+    node.at = spot_of(p);
     node.has_height = tin.has_height[v] != 0;
     node.is_tin_vertex = true;
     node.map = {map.x, map.y, node.has_height ? facts.heights.height(tin.vertices[v].height) : 0.0};
@@ -39,117 +45,90 @@ CutMesh cut_mesh_of(const Tin& tin, const StoreFacts& facts) {
   return mesh;
 }
 
-LatticePoint lattice_point(MapPoint map, const StoreFacts& facts) {
-  const MapPoint grid = facts.map.to_grid(map);
-  const double x = grid.x * kLatticePerGrid;
-  const double y = grid.y * kLatticePerGrid;
-  if (!(std::abs(x) < kLatticeMax && std::abs(y) < kLatticeMax)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the polygon reaches far beyond the terrain (2^38 grid units); give one near it");
-  }
-  return {std::llround(x), std::llround(y)};
-}
-
-void push(Ring& ring, MapPoint map, LatticePoint lattice) {
-  if (!ring.lattice.empty() && ring.lattice.back() == lattice) return;
-  ring.lattice.push_back(lattice);
-  ring.map.push_back({map.x, map.y});
-}
-
-Ring ring_of(const Window& w, const StoreFacts& facts) {
-  // A side outside of the terrain cuts nothing, wherever it is: so corners are clamped to near the
-  // terrain.
-  const auto lattice = [&](double x, double y) {
-    const MapPoint grid = facts.map.to_grid({x, y});
-    const GridBox& b = facts.bounds;
-    return LatticePoint{
-        std::llround(std::clamp(grid.x, b.min_x - 16.0, b.max_x + 16.0) * kLatticePerGrid),
-        std::llround(std::clamp(grid.y, b.min_y - 16.0, b.max_y + 16.0) * kLatticePerGrid)};
-  };
-  Ring ring;
-  for (const MapPoint corner : {MapPoint{w.min_x, w.min_y}, MapPoint{w.max_x, w.min_y},
-                                MapPoint{w.max_x, w.max_y}, MapPoint{w.min_x, w.max_y}}) {
-    push(ring, corner, lattice(corner.x, corner.y));
-  }
+/// Corners that fall on one spot are one.
+Ring without_repeats(Ring ring) {
+  const auto is_one = [](const BorderCorner& a, const BorderCorner& b) { return a.at == b.at; };
+  ring.erase(std::unique(ring.begin(), ring.end(), is_one), ring.end());
+  while (ring.size() > 1 && is_one(ring.front(), ring.back())) ring.pop_back();
   return ring;
 }
 
+Ring ring_of(const Window& w, const SpotMap& spots, const StoreFacts& facts) {
+  const GridBox& b = facts.bounds;
+  Ring ring;
+  for (const MapPoint corner : {MapPoint{w.min_x, w.min_y}, MapPoint{w.max_x, w.min_y},
+                                MapPoint{w.max_x, w.max_y}, MapPoint{w.min_x, w.max_y}}) {
+    const MapPoint grid = facts.map.to_grid(corner);
+    ring.push_back({spots.rounded({std::clamp(grid.x, b.min_x - kBeside, b.max_x + kBeside),
+                                   std::clamp(grid.y, b.min_y - kBeside, b.max_y + kBeside)}),
+                    corner});
+  }
+  return without_repeats(std::move(ring));
+}
+
+Ring ring_of(const std::vector<MapPoint>& corners, const SpotMap& spots, const StoreFacts& facts) {
+  Ring ring;
+  for (const MapPoint corner : corners) {
+    const MapPoint grid = facts.map.to_grid(corner);
+    if (!(std::abs(grid.x) < kFarthest && std::abs(grid.y) < kFarthest)) {
+      throw Error(ErrorCode::invalid_argument,
+                  "the polygon reaches far beyond the terrain (2^38 grid units); give one near it");
+    }
+    ring.push_back({spots.rounded(grid), corner});
+  }
+  return without_repeats(std::move(ring));
+}
+
 std::vector<Ring> rings_of(const Region& region, const StoreFacts& facts) {
+  const SpotMap spots(facts.map, facts.bounds);
   std::vector<Ring> rings;
   if (const auto* window = std::get_if<Window>(&region)) {
-    rings.push_back(ring_of(*window, facts));
+    rings.push_back(ring_of(*window, spots, facts));
   } else if (const auto* polygon = std::get_if<Polygon>(&region)) {
-    for (const auto& points : polygon->rings) {
-      Ring ring;
-      for (const MapPoint p : points) push(ring, p, lattice_point(p, facts));
-      rings.push_back(std::move(ring));
-    }
+    for (const auto& corners : polygon->rings) rings.push_back(ring_of(corners, spots, facts));
   } else {
     throw Error(ErrorCode::invalid_argument,
                 "only a window or a polygon can be cut to; a point has no inside");
-  }
-  for (Ring& ring : rings) {
-    while (ring.lattice.size() > 1 && ring.lattice.front() == ring.lattice.back()) {
-      ring.lattice.pop_back();
-      ring.map.pop_back();
-    }
   }
   return rings;
 }
 
 /// True when the segment may meet the box of the terrain; false is certain.
 bool near_terrain(const BorderSegment& s, const GridBox& bounds) {
-  const LatticePoint low{std::int64_t{bounds.min_x} << 22, std::int64_t{bounds.min_y} << 22};
-  const LatticePoint high{std::int64_t{bounds.max_x} << 22, std::int64_t{bounds.max_y} << 22};
-  if (std::max(s.from.x, s.to.x) < low.x || std::min(s.from.x, s.to.x) > high.x) return false;
-  if (std::max(s.from.y, s.to.y) < low.y || std::min(s.from.y, s.to.y) > high.y) return false;
-  int left = 0;
-  int right = 0;
-  for (const LatticePoint corner :
-       {low, LatticePoint{high.x, low.y}, high, LatticePoint{low.x, high.y}}) {
-    const double o = lattice_orient(s.from, s.to, corner);
-    left += o > 0;
-    right += o < 0;
-  }
-  return left < 4 && right < 4;
+  const Spot a = s.from.at, b = s.to.at;
+  const Spot low = spot_of(GridPoint{bounds.min_x, bounds.min_y});
+  const Spot high = spot_of(GridPoint{bounds.max_x, bounds.max_y});
+  return std::max(a.x, b.x) >= low.x && std::min(a.x, b.x) <= high.x &&
+         std::max(a.y, b.y) >= low.y && std::min(a.y, b.y) <= high.y && line_meets(a, b, bounds);
 }
 
 void insert_ring(CutMesh& mesh, const Ring& ring, const GridBox& bounds) {
-  const std::size_t n = ring.lattice.size();
+  const std::size_t n = ring.size();
   if (n < 2) return;
-  const GridBox& b = bounds;
   std::vector<std::uint32_t> ids(n, kNone);
   for (std::size_t i = 0; i < n; ++i) {
-    const LatticePoint p = ring.lattice[i];
-    const bool in_box = p.x >= std::int64_t{b.min_x} << 22 && p.x <= std::int64_t{b.max_x} << 22 &&
-                        p.y >= std::int64_t{b.min_y} << 22 && p.y <= std::int64_t{b.max_y} << 22;
-    if (in_box) ids[i] = mesh.insert_point(p, ring.map[i]);
+    if (contains(bounds, ring[i].at)) ids[i] = mesh.insert_point(ring[i]);
   }
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t j = i + 1 == n ? 0 : i + 1;
-    const BorderSegment segment{ring.lattice[i], ring.lattice[j], ring.map[i], ring.map[j]};
+    const BorderSegment segment{ring[i], ring[j]};
     if (ids[i] == kNone && ids[j] == kNone && !near_terrain(segment, bounds)) continue;
     mesh.insert_segment(segment, ids[i], ids[j]);
   }
 }
 
-bool is_inside(double x, double y, const std::vector<Ring>& rings) {
-  bool inside = false;
-  for (const Ring& ring : rings) {
-    for (std::size_t i = 0, j = ring.lattice.size() - 1; i < ring.lattice.size(); j = i++) {
-      const double ax = static_cast<double>(ring.lattice[i].x);
-      const double ay = static_cast<double>(ring.lattice[i].y);
-      const double bx = static_cast<double>(ring.lattice[j].x);
-      const double by = static_cast<double>(ring.lattice[j].y);
-      if ((ay > y) != (by > y) && x < ax + (y - ay) / (by - ay) * (bx - ax)) inside = !inside;
-    }
+/// Doubles are exact enough for the sides: what is asked of them lies in the middle of a triangle.
+PolygonSides sides_on_grid(const std::vector<Ring>& rings) {
+  std::vector<std::vector<MapPoint>> corners(rings.size());
+  for (std::size_t i = 0; i < rings.size(); ++i) {
+    for (const BorderCorner& c : rings[i]) corners[i].push_back(grid_of(c.at));
   }
-  return inside;
+  return PolygonSides(corners);
 }
 
 /// Whether each triangle is inside of the region. All triangles of a piece of the mesh between
 /// borders have one answer, which is asked at the middle of the largest of them.
-std::vector<bool> inside_of(const CutMesh& mesh, const std::vector<Ring>& rings) {
+std::vector<bool> inside_of(const CutMesh& mesh, const PolygonSides& sides) {
   std::vector<bool> inside(mesh.triangles.size(), false);
   std::vector<bool> seen(mesh.triangles.size(), false);
   std::vector<TriangleId> piece;
@@ -158,11 +137,10 @@ std::vector<bool> inside_of(const CutMesh& mesh, const std::vector<Ring>& rings)
     piece.assign(1, seed);
     seen[seed] = true;
     TriangleId largest = seed;
-    double largest_area = -1.0;
+    Int128 largest_area = -1;
     for (std::size_t k = 0; k < piece.size(); ++k) {
       const CutTriangle& t = mesh.triangles[piece[k]];
-      const double area =
-          lattice_orient(mesh.nodes[t.v[0]].at, mesh.nodes[t.v[1]].at, mesh.nodes[t.v[2]].at);
+      const Int128 area = side(mesh.nodes[t.v[0]].at, mesh.nodes[t.v[1]].at, mesh.nodes[t.v[2]].at);
       if (area > largest_area) {
         largest_area = area;
         largest = piece[k];
@@ -173,13 +151,12 @@ std::vector<bool> inside_of(const CutMesh& mesh, const std::vector<Ring>& rings)
         piece.push_back(t.n[i]);
       }
     }
-    double x = 0;
-    double y = 0;
+    MapPoint middle;
     for (const auto v : mesh.triangles[largest].v) {
-      x += static_cast<double>(mesh.nodes[v].at.x) / 3;
-      y += static_cast<double>(mesh.nodes[v].at.y) / 3;
+      const MapPoint corner = grid_of(mesh.nodes[v].at);
+      middle = {middle.x + corner.x / 3, middle.y + corner.y / 3};
     }
-    if (!is_inside(x, y, rings)) continue;
+    if (!sides.surround(middle)) continue;
     for (const TriangleId t : piece) inside[t] = true;
   }
   return inside;
@@ -193,7 +170,7 @@ Mesh cut_to_region(const RefinedTin& refined, const StoreFacts& facts, const Reg
   Mesh mesh;
   if (cut.triangles.empty()) return mesh;
   for (const Ring& ring : rings) insert_ring(cut, ring, facts.bounds);
-  const std::vector<bool> inside = inside_of(cut, rings);
+  const std::vector<bool> inside = inside_of(cut, sides_on_grid(rings));
   std::vector<std::uint32_t> place(cut.nodes.size(), kNone);
   for (TriangleId t = 0; t < cut.triangles.size(); ++t) {
     if (!inside[t] || cut.triangles[t].cls == TriangleClass::kVoid) continue;

@@ -3,7 +3,7 @@
 // `refine --cut`: triangles cut at the border of a region.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 #include "tools/formats/mesh.h"
 
@@ -18,10 +18,10 @@ namespace ptin::tools {
 /// edge in a fixed order (on a window's side: from its coordinate alone), so two windows that share
 /// a side get the same bits there. Heights are interpolated linearly.
 ///
-/// Positions are decided exactly on a lattice of 2^-22 grid units to which corners and cut points
-/// are snapped. The region's corners keep the caller's own coordinates, and a cut point on a
-/// window's side keeps the coordinate of that side. A cut closer to a vertex than the lattice can
-/// tell goes through that vertex. REQUIRES: `refined` holds every triangle that meets the region.
+/// Positions are decided exactly. Corners become spots as SpotMap rounds them, so that one given at a
+/// vertex stands on it; cut points are rounded to spots too. The region's corners keep the caller's
+/// own coordinates, and a cut point on a window's side keeps the coordinate of that side. A cut closer
+/// to a vertex than spots can tell goes through that vertex. REQUIRES: `refined` holds every triangle that meets the region.
 /// @throws Error invalid_argument  the region is a point or a segment, or a polygon reaches beyond
 ///                                 2^38 grid units
 /// Cost: linear in the triangles, and for each corner of the region the walk to it from the corner

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A triangulation into which the border of a region is inserted (cut.h): nodes on a fine lattice,
-// exact orientation.
+// A triangulation into which the border of a region is inserted (cut.h): its nodes are spots, so that
+// every decision is exact.
 #pragma once
 
 #include <array>
@@ -9,25 +9,13 @@
 #include <vector>
 
 #include "engine/mesh/tin.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin::tools {
 
-/// A position on the lattice of 2^-22 grid units.
-struct LatticePoint {
-  std::int64_t x = 0;
-  std::int64_t y = 0;
-  friend bool operator==(const LatticePoint&, const LatticePoint&) = default;
-};
-inline constexpr double kLatticePerGrid = 4194304.0;  // 2^22
-/// Largest coordinate: differences stay below 2^62 and twice an area below 2^125.
-inline constexpr double kLatticeMax = 1152921504606846976.0;  // 2^60
-
-/// Twice the signed area of (a, b, c): the sign is exact, the value is rounded to double.
-[[nodiscard]] double lattice_orient(LatticePoint a, LatticePoint b, LatticePoint c) noexcept;
-
 /// A vertex of the cut mesh.
 struct CutNode {
-  LatticePoint at;
+  Spot at;
   std::array<double, 3> map{};  ///< x, y in map units, height.
   bool has_height = false;
   bool is_tin_vertex = false;
@@ -45,10 +33,15 @@ struct CutTriangle {
   TriangleClass cls = TriangleClass::kSurface;
 };
 
-/// One straight piece of a region's border. The map coordinates are the caller's own.
+/// A corner of a region's border. The map coordinates are the caller's own.
+struct BorderCorner {
+  Spot at;
+  MapPoint map;
+};
+
+/// One straight piece of a region's border.
 struct BorderSegment {
-  LatticePoint from, to;
-  std::array<double, 2> map_from{}, map_to{};
+  BorderCorner from, to;
 };
 
 /// The triangulation, and the steps that insert a border into it. Every step keeps it valid:
@@ -58,10 +51,9 @@ class CutMesh {
   std::vector<CutNode> nodes;
   std::vector<CutTriangle> triangles;
 
-  /// The node at `at`: an existing one, or a new one that splits an edge or a triangle. kNone when
-  /// `at` lies outside of the mesh.
-  /// @param map  The map coordinates of a new node.
-  std::uint32_t insert_point(LatticePoint at, const std::array<double, 2>& map);
+  /// The node at a corner: an existing one, or a new one that splits an edge or a triangle. kNone
+  /// when the corner lies outside of the mesh.
+  std::uint32_t insert_point(const BorderCorner& corner);
   /// Makes the part of a segment inside of the mesh a chain of border edges. `from` and `to` are
   /// the nodes at its ends, or kNone where an end lies outside.
   void insert_segment(const BorderSegment& segment, std::uint32_t from, std::uint32_t to);
@@ -70,27 +62,25 @@ class CutMesh {
   struct CutPlace {
     TriangleId triangle = kNone;
     int corner = -1;  ///< >= 0: at this corner.
-    int side = -1;    ///< >= 0: on the edge opposite to this corner.
+    int edge = -1;    ///< >= 0: on the edge opposite to this corner.
   };
-  [[nodiscard]] LatticePoint at(std::uint32_t node) const noexcept { return nodes[node].at; }
-  [[nodiscard]] CutPlace place_in(TriangleId t, LatticePoint p) const noexcept;
-  [[nodiscard]] CutPlace locate(LatticePoint p);
+  [[nodiscard]] Spot at(std::uint32_t node) const noexcept { return nodes[node].at; }
+  [[nodiscard]] CutPlace place_in(TriangleId t, Spot p) const noexcept;
+  [[nodiscard]] CutPlace locate(Spot p);
   [[nodiscard]] std::vector<TriangleId> star(std::uint32_t v) const;
   void split_triangle(TriangleId t, std::uint32_t node);
-  void split_edge(TriangleId t, int side, std::uint32_t node);
-  [[nodiscard]] bool can_split_edge(TriangleId t, int side, LatticePoint p) const noexcept;
+  void split_edge(TriangleId t, int edge, std::uint32_t node);
+  [[nodiscard]] bool can_split_edge(TriangleId t, int i, Spot p) const noexcept;
   void toggle_border(std::uint32_t a, std::uint32_t b);
-  void trace(std::uint32_t from, LatticePoint target, std::uint32_t to,
-             const BorderSegment& segment);
+  void trace(std::uint32_t from, Spot target, std::uint32_t to, const BorderSegment& segment);
   /// One step of trace(): the next node on the way from `v`, kNone when the way leaves the mesh.
-  std::uint32_t next_on_the_way(std::uint32_t v, LatticePoint target, std::uint32_t to,
+  std::uint32_t next_on_the_way(std::uint32_t v, Spot target, std::uint32_t to,
                                 const BorderSegment& segment);
-  /// The node where the way v -> target crosses the edge opposite to `side` of `t`: new, or an end
-  /// of the edge.
-  std::uint32_t cross_edge(TriangleId t, int side, LatticePoint v, LatticePoint target,
-                           const BorderSegment& segment);
-  [[nodiscard]] CutNode crossing(std::uint32_t a, std::uint32_t b, LatticePoint v,
-                                 LatticePoint target, const BorderSegment& segment) const;
+  /// The node where the way v -> target crosses the edge opposite to corner `i` of `t`: new, or an
+  /// end of the edge.
+  std::uint32_t cross_edge(TriangleId t, int i, Spot v, Spot target, const BorderSegment& segment);
+  [[nodiscard]] CutNode crossing(std::uint32_t a, std::uint32_t b, Spot v, Spot target,
+                                 const BorderSegment& segment) const;
   /// The first node of the mesh's outline that a segment with both ends outside meets.
   std::uint32_t entry_of(const BorderSegment& segment);
 

@@ -14,7 +14,7 @@
 namespace ptin::tools {
 
 /// Fills in the CRS, the lengths of its units at the middle of the mesh, and the frame.
-/// @param facts  Of the terrain.
+/// @param facts  Facts of the terrain.
 void set_crs(Mesh& mesh, const CrsFacts& crs, const StoreFacts& facts);
 
 /// The frame of all meshes of a terrain, whatever their window and level of detail, so that they
@@ -22,8 +22,8 @@ void set_crs(Mesh& mesh, const CrsFacts& crs, const StoreFacts& facts);
 /// are metres, by their lengths there.
 [[nodiscard]] LocalFrame frame_of(const StoreFacts& facts, const CrsFacts& crs);
 
-/// True when a format keeps to that frame, and an answer has to tell it.
-/// @param path  Of the output.
+/// True when a format keeps to that frame, and an answer has to say so.
+/// @param path  Path of the output.
 /// @throws Error as mesh_format_of()
 [[nodiscard]] bool has_frame(const std::string& path);
 /// The frame as `{"origin", "scale"}`, and as a line for people.

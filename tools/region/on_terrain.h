@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 
 /// Refuses a region that shares no point with the box of the terrain's samples: no answer could
 /// hold anything of the terrain. A region within the box but outside of the terrain's hull passes.
 /// @param option  Gave the region; named in the error.
-/// @throws Error invalid_argument  tells the terrain's bounds, and whether the region would meet
+/// @throws Error invalid_argument  states the terrain's bounds, and whether the region would meet
 ///                                 them if x and y changed places; as GridRegion
 /// Cost: linear in the region's corners.
 void check_on_terrain(const Region& region, const StoreFacts& facts, const std::string& option);

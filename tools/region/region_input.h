@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/region/vector_input.h"
 
 namespace ptin::tools {
@@ -18,8 +18,8 @@ struct AskedPolygon {
 };
 /// The polygon in `text`: WKT when it reads "POLYGON..." or "MULTIPOLYGON...", else the name of a
 /// file with WKT or of a vector file. The rings of a feature are told apart by nesting (even-odd).
-/// Of a vector file's first layer, all that any of its polygons covers is inside. A file with a CRS
-/// of its own is transformed into the terrain's when both are known.
+/// What any polygon of a vector file's first layer covers is inside. A file with a CRS of its own
+/// is transformed into the terrain's when both are known.
 /// @throws Error not_found         no such file
 ///               invalid_argument  not a polygon; not a vector file; the CRS cannot be transformed
 ///               as read_geometries()

@@ -9,7 +9,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/region/on_terrain.h"
 
 namespace ptin::tools {
@@ -108,32 +108,15 @@ std::vector<Serving> servings_of(const std::string& text) {
   return servings;
 }
 
-namespace {
-
-/// Facts by which a receiver tells lengths over ground without a library of projections.
-nlohmann::json ground_json(const CrsFacts& crs) {
-  const GroundFacts ground = ground_facts_of(crs);
-  nlohmann::json json = {{"geographic", ground.geographic},
-                         {"semi_major", ground.semi_major},
-                         {"inverse_flattening", ground.inverse_flattening},
-                         {"metres_per_height", ground.metres_per_height}};
-  if (ground.geographic) {
-    json["radians_per_map_unit"] = ground.radians_per_map_unit;
-  } else {
-    json["metres_per_map_unit"] = ground.metres_per_map_unit;
-  }
-  return json;
-}
-
-}  // namespace
-
 std::string metadata_of_stream(const StoreFile& store, const Serving& wanted) {
   const nlohmann::json all = metadata_of(store);
   nlohmann::json metadata = {{"request", to_json(wanted)}};
   for (const char* name : {"crs", "crs_wkt", "units"}) {
     if (const auto it = all.find(name); it != all.end()) metadata[name] = *it;
   }
-  metadata["ground"] = ground_json(crs_facts_of(all));
+  // A receiver without a library of projections tells lengths over ground by these.
+  metadata["ground"] = json_of(ground_facts_of(crs_facts_of(all)));
+  if (metadata.contains("crs") && metadata["crs"].is_object()) metadata["crs"].erase("facts");
   metadata["free_of_voids"] = store.facts().free_of_voids;
   const nlohmann::json options = all.value("options", nlohmann::json::object());
   if (const auto it = options.find("void_slope"); it != options.end()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What a stream is asked for: as text that a receiver hands back, as a predicate, and as what the
-// stream tells of itself.
+// stream says of itself.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 
 namespace ptin::tools {

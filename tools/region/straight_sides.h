@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 class OGRCoordinateTransformation;
 

@@ -3,7 +3,7 @@
 // From a refined TIN on the grid to a mesh in map coordinates.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/store_file.h"
 #include "tools/formats/mesh.h"
 

@@ -57,7 +57,7 @@ struct GeometrySource {
   std::string text;
   std::vector<std::string> words;
   std::string example;  ///< WKT that would do, for errors.
-  LayerWish layer;      ///< Of a vector file.
+  LayerWish layer;      ///< Which layer of a vector file.
 };
 
 /// Hands each geometry to `visit`, with its feature, or with null where it is WKT.

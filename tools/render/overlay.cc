@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/stop.h"
 #include "tools/plot/axis.h"
 
@@ -44,7 +44,7 @@ std::string height_text(float height, float range, const std::string& unit) {
 
 /// What the legend says, and how wide it is.
 struct Legend {
-  std::string length, low, high;  ///< `low` and `high` are empty where colours tell no heights.
+  std::string length, low, high;  ///< `low` and `high` are empty where colours show no heights.
   double bar = 0.0, ramp = 0.0;   ///< Pixels.
 };
 

@@ -17,7 +17,7 @@ namespace ptin::tools {
 void draw_wireframe(Canvas& canvas, const RefinedTin& refined, const StoreFacts& facts,
                     const View& view, const std::stop_token& stop = {});
 
-/// Draws a scale bar into the lower left corner and, when colours tell heights, the colours with
+/// Draws a scale bar into the lower left corner and, when colours show heights, the colours with
 /// the lowest and the highest height. A picture too small for it gets none.
 /// @param length_unit  The name of the ground's unit.
 /// @param height_unit  The name of the heights' unit.

@@ -42,7 +42,7 @@ Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, in
       const int px = std::clamp(x + dx * reach, 0, r.width - 1);
       const int py = std::clamp(y + dy * reach, 0, r.height - 1);
       const std::size_t place = r.place(px, py);
-      z[dy + 1][dx + 1] = r.classes[place] == PixelClass::kSurface ? r.heights[place] : centre;
+      z[dy + 1][dx + 1] = r.states[place] == PointState::kSurface ? r.heights[place] : centre;
     }
   }
   const double run = 8.0 * reach * ground_per_pixel;
@@ -75,8 +75,8 @@ Colour page_colour(std::uint32_t page) {
 Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per_pixel, int factor,
                     const ReliefStyle& style) {
   const std::size_t place = raster.place(x, y);
-  if (raster.classes[place] == PixelClass::kOutside) return kBackground;
-  if (raster.classes[place] == PixelClass::kVoid) {
+  if (raster.states[place] == PointState::kOutside) return kBackground;
+  if (raster.states[place] == PointState::kVoid) {
     return (x + y) / factor % 9 == 0 ? kHatchColour : kVoidColour;
   }
   const Slope slope = slope_at(raster, x, y, ground_per_pixel, style.reach);
@@ -108,7 +108,7 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   const double ground = view.ground_per_pixel() * view.width / raster.width;
   for (int y = 0; y < raster.height; y += step) {
     for (int x = 0; x < raster.width; x += step) {
-      if (raster.classes[raster.place(x, y)] != PixelClass::kSurface) continue;
+      if (raster.states[raster.place(x, y)] != PointState::kSurface) continue;
       const float height = raster.heights[raster.place(x, y)];
       lowest = std::min(lowest, height), highest = std::max(highest, height);
       const Slope slope = slope_at(raster, x, y, ground, style.reach);

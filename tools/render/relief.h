@@ -19,7 +19,7 @@ struct ReliefStyle {
   bool any_below = false, any_above = false;  ///< There are lower or higher heights.
   /// The factor of heights in the shading; more than 1 where the terrain is flat.
   double exaggeration = 1.0;
-  bool by_page = false;  ///< Colours tell the page that a triangle came from.
+  bool by_page = false;  ///< Colours show the page that a triangle came from.
   /// Slopes are taken over this many pixels of the raster to each side: about the spacing of
   /// samples, so that single facets of a dense TIN do not show. 1 shows every facet.
   int reach = 1;

@@ -3,11 +3,11 @@
 // What a picture shows: a window of the map on a rectangle of pixels, with the right aspect.
 #pragma once
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::tools {
 
-/// Of a side of a picture: Cairo has no larger ones.
+/// Most pixels of a picture's side: Cairo has no larger ones.
 constexpr int kMostPixels = 32767;
 
 /// Pixel (0, 0) is the upper left one; its centre is at (0.5, 0.5).

@@ -16,7 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/http/response.h"
 #include "tools/serve/endpoint.h"
 #include "tools/serve/places.h"

@@ -16,7 +16,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/serve/serve_options.h"
 #include "tools/serve/tile_sets.h"
 

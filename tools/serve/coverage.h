@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/serve/answer_parts.h"
 
 namespace ptin::serve {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/serve/answer_parts.h"
 
 namespace ptin::serve {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/region/straight_sides.h"
 
 namespace ptin::serve {

@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/terrain_tiles.h"
 #include "tools/tiles/terrain_tileset.h"
 

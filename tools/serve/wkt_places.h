@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::serve {
 

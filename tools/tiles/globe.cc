@@ -67,7 +67,7 @@ Window window_of(const GridBox& b) {
 }
 
 /// Calls visit(xs, ys) for each side of a box: `steps` + 1 points from corner to corner, of which
-/// place(x, y) tells two numbers each.
+/// place(x, y) gives two numbers each.
 template <class Place, class Visit>
 void walk_sides(const Window& w, std::size_t steps, const Place& place, const Visit& visit) {
   const std::array<MapPoint, 5> corners{{{w.min_x, w.min_y},
@@ -110,7 +110,7 @@ VerticalDatum vertical_datum(const CrsFacts& crs) {
     const bool is_solid = srs.GetAxesCount() >= 3 && srs.IsLocal() == 0;
     return is_solid ? VerticalDatum::kEllipsoidal : VerticalDatum::kUnknown;
   }
-  // 2002 is the type of a datum that is an ellipsoid, in WKT 1, which alone tells it.
+  // 2002 is the type of a datum that is an ellipsoid, in WKT 1, which alone says so.
   const char* const type = srs.GetAttrValue("VERT_DATUM", 1);
   return type != nullptr && std::string(type) == "2002" ? VerticalDatum::kEllipsoidal
                                                         : VerticalDatum::kOrthometric;

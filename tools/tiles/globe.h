@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/ellipsoid.h"
 
 namespace ptin::tools {
@@ -19,7 +19,7 @@ namespace ptin::tools {
 enum class VerticalDatum {
   kEllipsoidal,  ///< An ellipsoid, as viewers of the globe assume.
   kOrthometric,  ///< The sea's level or the like, up to 110 m away from the ellipsoid.
-  kUnknown,      ///< Nothing tells.
+  kUnknown,      ///< Nothing says.
 };
 
 /// What the CRS says about its heights.
@@ -89,7 +89,7 @@ class Globe {
 
   /// Holds the terrain's domain. A little larger than need be where its sides are bent in degrees.
   [[nodiscard]] const GlobeBox& box() const noexcept { return box_; }
-  /// Of all heights, metres, after they were transformed. Bounds that are reached where heights are
+  /// Bounds of all heights after they were transformed, metres. They are reached where heights are
   /// taken as they are.
   [[nodiscard]] double min_height() const noexcept { return min_height_; }
   [[nodiscard]] double max_height() const noexcept { return max_height_; }

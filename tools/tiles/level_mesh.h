@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/mesh/tin.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/tile_grid.h"
 #include "tools/tiles/tile_levels.h"
@@ -88,7 +88,7 @@ class LevelMesh {
   double short_square_;  ///< Edges of this length squared bend too little to be looked at.
   double normal_scale_;
   std::vector<LevelPoint> points_;
-  std::vector<Place> places_;  ///< Beside `points_`.
+  std::vector<Place> places_;  ///< One for each of `points_`.
   std::vector<Corners> triangles_;
   std::map<std::pair<double, double>, Id> middles_;
 };

@@ -17,7 +17,7 @@ namespace {
 /// Heights of one tile on the lattice of its level.
 struct TileHeights {
   std::vector<std::uint16_t> shares;  ///< By vertex, of 32767.
-  double least = 0.0, most = 0.0;     ///< Of the header: both are float32.
+  double least = 0.0, most = 0.0;     ///< Heights of the header: both are float32.
 };
 
 TileHeights heights_of(const TileMesh& mesh, double step) {

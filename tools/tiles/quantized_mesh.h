@@ -32,7 +32,7 @@ struct QuantizedMeshTarget {
 /// metres.)
 [[nodiscard]] std::string quantized_mesh(const TileMesh& mesh, const QuantizedMeshTarget& target);
 
-/// The point by which a viewer tells that nothing of the positions can be seen beyond the horizon,
+/// The point by which a viewer knows that nothing of the positions can be seen beyond the horizon,
 /// in units of the ellipsoid's axes, in the direction of `centre`. Where there is none, because
 /// they reach around the Earth, it is so far away that it is hidden from the other side alone.
 [[nodiscard]] Vec3 horizon_occlusion_point(const Vec3& centre, std::span<const Vec3> positions);

@@ -29,7 +29,7 @@ std::vector<TileLevel> levels_of(const Terrain& terrain, const Globe& globe) {
   return tile_levels(terrain.store(), globe, wanted);
 }
 
-/// As the header of terrain_tiles.h tells.
+/// As terrain_tiles.h has it.
 int first_level_of(const std::vector<TileLevel>& levels, const Globe& globe) {
   const GlobeBox& box = globe.box();
   const double extent = std::max(box.east - box.west, box.north - box.south);

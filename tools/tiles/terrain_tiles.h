@@ -5,7 +5,7 @@
 //
 // What a tile is
 // - Cesium takes a tile of level z to be off by 77 067 m / 2^z, and so it is at every sample, at most
-//   (between samples, of the full TIN, by the certified deviation): TileLevel tells how that is
+//   (between samples, of the full TIN, by the certified deviation): TileLevel says how that is
 //   divided. The finest level is built more finely (tile_levels()).
 // - Vertices are those of the TIN at the level's error, transformed to EPSG:4326, and only then cut
 //   at the tile's sides. Neighbours of one level have equal vertices on the side that they share:
@@ -30,16 +30,16 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/tile_pyramid.h"
 
 namespace ptin::tools {
 
 struct TerrainTilesOptions {
-  /// Cesium assumes heights above the ellipsoid; vertical_datum() tells what the file's are.
+  /// Cesium assumes heights above the ellipsoid; vertical_datum() says what the file's are.
   GlobeOptions globe;
-  std::uint32_t most_vertices = 65'000;  ///< Of a tile.
+  std::uint32_t most_vertices = 65'000;  ///< Most vertices of a tile.
   std::uint64_t coverage_triangles = 200'000;
 };
 
@@ -57,19 +57,19 @@ class TerrainTiles {
  public:
   /// @param terrain  A copy of it is kept, which shares the file.
   /// @param crs      crs_facts() of the terrain's store, or what is known better.
-  /// @param limits   Of finding out which tiles there are.
+  /// @param limits   Limits of finding out which tiles there are.
   /// @throws Error invalid_argument  as Globe
   ///               as TilePyramid
   TerrainTiles(const Terrain& terrain, const CrsFacts& crs, const TerrainTilesOptions& options,
                const QueryLimits& limits);
 
   /// layer.json. The template of tiles is relative to it.
-  /// @param version  Of the tiles' bytes; a part of their addresses, so in letters that these have.
+  /// @param version  Version of the tiles' bytes, a part of addresses: in letters that these have.
   [[nodiscard]] nlohmann::json layer_json(const std::string& version) const;
   /// A tile; none when there is no such tile.
   /// @throws Error as TilePyramid::mesh()
   [[nodiscard]] std::optional<Tile> tile(const TileRequest& request) const;
-  /// Whether there is such a tile: what `available` of layer_json() tells. Cost: a few look-ups.
+  /// Whether there is such a tile, as `available` of layer_json() has it. Cost: a few look-ups.
   [[nodiscard]] bool has(std::int64_t z, std::int64_t x, std::int64_t y) const noexcept;
 
   /// The first level that is made from the terrain; those before it are flat.

@@ -136,7 +136,7 @@ TerrainTileset::TerrainTileset(const Terrain& terrain, std::shared_ptr<const Glo
     : extent_(extent_of(*globe)),
       first_error_(wanted_error(terrain, *globe, extent_)),
       pyramid_(made_pyramid(terrain, std::move(globe), options, limits)) {
-  // A file that tells of no error as large as that of its only level has one level alone.
+  // A file that has no error as large as that of its only level has one level alone.
   first_error_ = std::max(first_error_, pyramid_.level(0).error);
 }
 
@@ -191,7 +191,7 @@ nlohmann::json TerrainTileset::tileset_json() const {
         {"subtrees", {{"uri", "subtrees/{level}/{x}/{y}.subtree"}}}}}};
   const double range = pyramid_.globe().max_height() - pyramid_.globe().min_height();
   return {{"asset", {{"version", "1.1"}}},
-          // Of nothing at all: whoever draws nothing misses the heights.
+          // The error of drawing nothing at all: what is missed are the heights.
           {"geometricError", std::max(2 * first_error_, range)},
           {"root", std::move(root)}};
 }

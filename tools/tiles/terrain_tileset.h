@@ -13,7 +13,7 @@
 // - Neighbours of one level have equal vertices on the side that they share: position and normal,
 //   as doubles (tile_glb.h). Holes are holes, and nothing is outside of the terrain.
 // - Tiles that hold no surface have no content, and where nothing below them does either they are
-//   not available. Of the finest levels of large files nobody has looked at every tile
+//   not available. Nobody has looked at every tile of the finest levels of large files
 //   (PyramidOptions::coverage_triangles): a content of those may be an empty scene.
 #pragma once
 
@@ -25,7 +25,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/crs/crs_facts.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/terrain_tiles.h"
 #include "tools/tiles/tile_pyramid.h"
 
@@ -67,7 +67,7 @@ class TerrainTileset {
                                          const TerrainTilesOptions& options,
                                          const QueryLimits& limits) const;
 
-  double extent_ = 0.0;  ///< Of the terrain, metres.
+  double extent_ = 0.0;  ///< Extent of the terrain, metres.
   double first_error_ = 0.0;
   TilePyramid pyramid_;
 };

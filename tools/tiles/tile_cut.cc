@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin::tools {
 
 namespace {
@@ -63,24 +65,21 @@ std::int64_t TileCut::twice_area() const noexcept {
 }
 
 void TileCut::cut_at(const Border& border) {
-  const auto side = [&](Id id) {
-    const TilePoint& p = point(id).at;
-    const std::int64_t beyond = (border.axis == Axis::kU ? p.u : p.v) - border.at;
-    return border.is_upper ? -beyond : beyond;  // negative: outside
-  };
   rest_.clear();
-  // Of two points along a border the one edge is crossed once, not there and back: its triangle is
-  // beside the tile, and is one of those around the cut point.
+  // Two points along a border have one edge, which is crossed once, not there and back: its
+  // triangle is beside the tile, and is one of those around the cut point.
   const std::size_t edges = polygon_.size() == 2 ? 1 : polygon_.size();
-  for (std::size_t i = 0; i < polygon_.size(); ++i) {
-    const Id a = polygon_[i];
-    const Id b = polygon_[i + 1 == polygon_.size() ? 0 : i + 1];
-    const std::int64_t of_a = side(a);
-    const std::int64_t of_b = side(b);
-    if (of_a >= 0) rest_.push_back(a);
-    const bool is_crossed = (of_a < 0 && of_b > 0) || (of_a > 0 && of_b < 0);
-    if (is_crossed && i < edges) rest_.push_back(cross(a, b, border));
-  }
+  clip_convex(
+      polygon_.size(),
+      [&](std::size_t i) {
+        const TilePoint& p = point(polygon_[i]).at;
+        const std::int64_t beyond = (border.axis == Axis::kU ? p.u : p.v) - border.at;
+        return border.is_upper ? -beyond : beyond;
+      },
+      [&](std::size_t i) { rest_.push_back(polygon_[i]); },
+      [&](std::size_t i, std::size_t j) {
+        if (i < edges) rest_.push_back(cross(polygon_[i], polygon_[j], border));
+      });
   polygon_.swap(rest_);
 }
 

@@ -58,7 +58,7 @@ class TileCut {
   struct CutPoint {
     LevelPoint point;
     Id low, high;  ///< Ends of the edge, lower first along the axis.
-    double share;  ///< Of the way from low to high.
+    double share;  ///< Share of the way from low to high.
     Axis axis;
   };
 
@@ -72,7 +72,7 @@ class TileCut {
 
   const LevelMesh& mesh_;
   TileBox tile_;
-  std::array<std::int64_t, 3> normal_{};  ///< Of the triangle that is being cut.
+  std::array<std::int64_t, 3> normal_{};  ///< Normal of the triangle that is being cut.
   std::vector<Id> polygon_, rest_;
   std::vector<CutPoint> cuts_;
   std::array<std::unordered_map<std::uint64_t, Id>, 4> known_;  ///< By border, then by ends.

@@ -18,7 +18,7 @@ struct TileGlbTarget {
 
 /// The bytes of a tile; of a mesh without triangles those of an empty scene. Positions are
 /// earth-centred (ECEF), y up as glTF wants: (x, z, -y). They are float32 around an origin that the
-/// node's translation tells in double. Origin and positions are multiples of `position_step`, exact
+/// node's translation has in double. Origin and positions are multiples of `position_step`, exact
 /// in float32: so translation + position are the same doubles on both sides of a border.
 /// REQUIRES: a tile smaller than 2^23 steps.
 [[nodiscard]] std::string tile_glb(const TileMesh& mesh, const TileGlbTarget& target);

@@ -58,9 +58,9 @@ struct TileId {
 struct TileGrid {
   double west = -180.0;
   double south = -90.0;
-  double width = 180.0;  ///< Of a tile of level 0.
+  double width = 180.0;  ///< Width of a tile of level 0.
   double height = 180.0;
-  std::int64_t columns = 2;  ///< Of level 0.
+  std::int64_t columns = 2;  ///< Columns of level 0.
   std::int64_t rows = 1;
   bool goes_around = true;  ///< The last column's neighbour is the first.
 

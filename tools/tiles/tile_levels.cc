@@ -27,7 +27,7 @@ double finest_step(const Globe& globe) {
                                       most / std::ldexp(1.0, 22), std::ldexp(1.0, -10)}));
 }
 
-/// The least positive error that the file tells of, metres; 0 when there is none.
+/// The least positive error in the file, metres; 0 when there is none.
 double finest_error(const StoreFile& store, const Globe& globe) {
   for (const ErrorBin& bin : store.error_bins()) {
     if (bin.upper > 0 && bin.records > 0 && std::isfinite(bin.upper))

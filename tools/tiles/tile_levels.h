@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 
 namespace ptin::tools {
@@ -25,15 +25,15 @@ struct TileLevel {
 
 /// What the levels are chosen from.
 struct LevelsWanted {
-  double first_error = 77067.0;  ///< Of level 0, metres; each level halves it.
-  double first_area = 1.0;       ///< Of a tile of level 0, in parts of that of the terrain's box.
+  double first_error = 77067.0;  ///< Error of level 0, metres; each level halves it.
+  double first_area = 1.0;       ///< Area of a tile of level 0, in parts of the terrain's box.
   int least_finest = 0;          ///< The finest level is this one or a further one.
   int most_levels = 24;
-  std::uint64_t mean_vertices = 1000;  ///< Of the finest level's tiles, at most.
+  std::uint64_t mean_vertices = 1000;  ///< Mean of the finest level's tiles, at most.
 };
 
 /// The levels from 0 to the finest. That is the first one whose tiles would hold at most
-/// `mean_vertices` of the full TIN, on the average, and no finer than the file tells anything: it
+/// `mean_vertices` of the full TIN, on the average, and no finer than the file has detail: it
 /// is built to the file's finest error, or to a 16th of its share of the first one's, whichever is
 /// more. (It is more than its share only where the first level is finer than the file already: then
 /// that is the only level.)

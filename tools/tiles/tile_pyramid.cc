@@ -160,14 +160,14 @@ TileRectangle TilePyramid::around(int z) const noexcept {
 std::optional<TileSet> TilePyramid::look_at(int z, const QueryLimits& limits) const {
   PartRequest request;
   request.detail.tolerance = level(z).tolerance;
-  request.limits = {std::min(limits.memory_bytes / 2, kPartBytes), limits.stop};
+  request.limits = limits.share(1, 2, kPartBytes);
   TinParts parts = terrain_.parts(request);
   const TileRectangle all = around(z);
   if (parts.triangles() > options_.coverage_triangles || all.columns() * all.rows() > kMostTiles)
     return std::nullopt;
   TileSet found(all);
   const Globe::Lease path = globe_->path();
-  const std::uint64_t most_triangles = limits.memory_bytes / 2 / LevelMesh::kBytesATriangle;
+  const std::uint64_t most_triangles = limits.share(1, 2).memory_bytes / LevelMesh::kBytesATriangle;
   const TileBox everywhere{INT64_MIN, INT64_MIN, INT64_MAX, INT64_MAX};
   walk_cells(parts, [&](const GridCell&, Tin& part, double) {
     LevelMesh mesh({grid_, z, level(z)}, *path, everywhere, most_triangles);
@@ -276,7 +276,7 @@ TileMesh TilePyramid::mesh(const TileId& tile, const QueryLimits& limits) const 
   if (is_empty(place)) return {};
   PartRequest request;
   request.detail.tolerance = level(tile.level).tolerance;
-  request.limits = {limits.memory_bytes / 2, limits.stop};
+  request.limits = limits.share(1, 2);
   TinParts parts = terrain_.parts(request);
   const Tin* const tin = parts.part(place);
   if (tin == nullptr) {
@@ -287,7 +287,7 @@ TileMesh TilePyramid::mesh(const TileId& tile, const QueryLimits& limits) const 
   }
   const Globe::Lease path = globe_->path();
   LevelMesh mesh({grid_, tile.level, level(tile.level)}, *path, keep,
-                 limits.memory_bytes / 2 / LevelMesh::kBytesATriangle);
+                 limits.share(1, 2).memory_bytes / LevelMesh::kBytesATriangle);
   mesh.add(*tin, terrain_.store().facts(), limits.stop);
   TileMesh made = TileMeshMaker(mesh, box, tile, options_.most_vertices).made(limits.stop);
   made.cost = parts.cost();

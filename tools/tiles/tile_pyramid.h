@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
 #include "tools/tiles/level_mesh.h"
 #include "tools/tiles/tile_grid.h"
@@ -25,11 +25,11 @@ struct TileMesh {
   struct Vertex {
     TilePoint at;         ///< Steps of the lattice from the tile's south-western corner.
     double height = 0.0;  ///< Metres.
-    Vec3 normal;          ///< Of length 1, earth-centred.
+    Vec3 normal;          ///< Normal of length 1, earth-centred.
   };
   std::vector<Vertex> vertices;  ///< In the order in which the triangles use them first.
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Counter-clockwise seen from above.
-  QueryCost cost;  ///< Of gathering the triangles; the time is that of the mesh.
+  QueryCost cost;  ///< Cost of gathering the triangles; the time is that of the mesh.
 };
 
 /// A tile as a format has it.
@@ -77,7 +77,7 @@ struct TileSet {
 struct PyramidOptions {
   /// First level of which tiles are made from the terrain.
   int first_level = 0;
-  std::uint32_t most_vertices = 65'000;  ///< Of a tile.
+  std::uint32_t most_vertices = 65'000;  ///< Most vertices of a tile.
   /// Levels of about at most this many triangles are looked at whole, to find the tiles that hold
   /// surface. A tile of a level further on is there when its ancestor on the last such level is.
   std::uint64_t coverage_triangles = 200'000;
@@ -87,7 +87,7 @@ struct PyramidOptions {
 class TilePyramid {
  public:
   /// @param levels  Not empty.
-  /// @param limits  Of finding out which tiles hold surface.
+  /// @param limits  Limits of finding out which tiles hold surface.
   /// @throws Error as Terrain's questions
   /// Cost: some seconds for every million of `coverage_triangles`.
   TilePyramid(Terrain terrain, std::shared_ptr<const Globe> globe, const TileGrid& grid,

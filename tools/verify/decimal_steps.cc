@@ -22,4 +22,14 @@ double steps_of(Decimal d, double origin, double step) {
   return static_cast<double>(is_negative ? -m : m) - std::round(origin / step);
 }
 
+MapPoint grid_position(const SourcePoint& p, const AffineMap& map,
+                       std::optional<double> resolution) {
+  if (!resolution) {
+    return {steps_of(p.x, map.origin_x, map.step_x), steps_of(p.y, map.origin_y, map.step_y)};
+  }
+  const auto from_zero = [&](double value) { return std::round(value / *resolution); };
+  return {from_zero(to_double(p.x)) - from_zero(map.origin_x),
+          from_zero(to_double(p.y)) - from_zero(map.origin_y)};
+}
+
 }  // namespace ptin::tools

@@ -24,7 +24,7 @@ namespace {
 
 __extension__ using Wide = __int128;
 
-/// Of a vertex of a boundary without heights: any other height is lower, and stands.
+/// Height of a vertex of a boundary without heights: any other is lower, and stands.
 constexpr double kNoHeight = std::numeric_limits<double>::infinity();
 
 /// A height as the file stores it.
@@ -39,12 +39,8 @@ double stored(double height, const HeightEncoding& heights) {
   return heights.height_of_code(std::nearbyint((height - heights.offset) / heights.step));
 }
 
-/// The names must be those that the store was built with.
-nlohmann::json options_with(const LineInputs& inputs, const StoreFile& store) {
-  const nlohmann::json metadata = metadata_of(store);
-  const nlohmann::json options = metadata.contains("options") && metadata["options"].is_object()
-                                     ? metadata["options"]
-                                     : nlohmann::json::object();
+/// Refuses files other than those that the store was built with, as far as their number shows.
+void check_files(const LineInputs& inputs, const nlohmann::json& options) {
   const nlohmann::json built = options.value("breaklines", nlohmann::json::array());
   const auto count = static_cast<std::size_t>(built.is_array() ? built.size() : 0);
   if (count != inputs.breaklines.size()) {
@@ -57,15 +53,21 @@ nlohmann::json options_with(const LineInputs& inputs, const StoreFile& store) {
                ? "this file was built with a boundary; name its file behind --boundary"
                : "this file was built without a boundary; leave --boundary out");
   }
-  return options;
 }
 
 }  // namespace
 
+nlohmann::json options_of_build(const StoreFile& store) {
+  const nlohmann::json metadata = metadata_of(store);
+  const auto options = metadata.find("options");
+  return options != metadata.end() && options->is_object() ? *options : nlohmann::json::object();
+}
+
 LineSamples::LineSamples(const LineInputs& inputs, const StoreFile& store,
-                         const std::stop_token& stop)
-    : facts_(&store.facts()) {
-  const nlohmann::json options = options_with(inputs, store);
+                         std::optional<double> resolution, const std::stop_token& stop)
+    : facts_(&store.facts()), resolution_(resolution) {
+  const nlohmann::json options = options_of_build(store);
+  check_files(inputs, options);
   for (const std::string& path : inputs.breaklines) {
     read(path, options.value("breakline_layer", std::string()), false, stop);
   }
@@ -83,10 +85,8 @@ void LineSamples::add_vertex(VertexKey key, double height, bool keeps_lower) {
 
 void LineSamples::read(const std::string& path, const std::string& layer, bool is_boundary,
                        const std::stop_token& stop) {
-  const AffineMap& map = facts_->map;
   const auto place_of = [&](const SourcePoint& p, bool is_laid) {
-    const double x = steps_of(p.x, map.origin_x, map.step_x);
-    const double y = steps_of(p.y, map.origin_y, map.step_y);
+    const auto [x, y] = grid_position(p, facts_->map, resolution_);
     // Parts of a line without heights that have no surface below are no part of the terrain.
     const double least = is_laid ? -kGridMax : 0.0;
     if (!(x >= least && y >= least && x <= kGridMax && y <= kGridMax)) {
@@ -106,8 +106,8 @@ void LineSamples::read(const std::string& path, const std::string& layer, bool i
             {place_of(line[i - 1], is_laid), p, !is_boundary && !is_laid, is_boundary});
     }
   };
-  const LineWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
-                      "a build with that layer alone"};
+  const LayerWish wish{is_boundary ? LayerKind::kAreas : LayerKind::kLines, layer,
+                       "a build with that layer alone"};
   const bool is_flat = read_line_file(path, wish, take, stop).is_flat;
   is_flat_ = is_flat_ || is_flat;
   is_boundary_flat_ = is_boundary && is_flat;

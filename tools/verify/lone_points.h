@@ -11,8 +11,8 @@
 
 namespace ptin::tools {
 
-/// True when no Delaunay triangle of the samples has the corner `p` and short sides alone. Of several
-/// points on one circle all triangles are taken for Delaunay triangles.
+/// True when no Delaunay triangle of the samples has the corner `p` and short sides alone. All
+/// triangles of several points on one circle are taken for Delaunay triangles.
 /// @param around       The samples of a box around `p`, `p` among them: all that a circle through `p`
 ///                     and two points near it may hold.
 /// @param is_too_long  Whether a side is.

@@ -34,7 +34,7 @@ struct RasterFile {
   GDALRasterBand* heights = nullptr;  ///< A band of `data`, as the next one.
   GDALRasterBand* alpha = nullptr;    ///< Null where there is none.
   /// A VRT once more, NaN where no source covers it.
-  std::unique_ptr<GDALDataset, CloseDataset> backed{};
+  GDALDatasetUniquePtr backed{};
   std::optional<double> nodata;  ///< The value that the file declares.
   int bits_of_float = 32;        ///< Bits of a value of Float32.
   double scale = 1.0;
@@ -111,10 +111,9 @@ void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   const double coarse =
       std::max(last_place(t[0]) / std::abs(t[1]), last_place(t[3]) / std::abs(t[5]));
   if (off > 0.02 + kPlaces * coarse) {
-    throw Error(ErrorCode::invalid_argument,
-                "not the source of this file: its samples stand on another grid, up to " +
-                    short_number(off) + " grid units beside the terrain's",
-                file.path);
+    refuse("not the source of this file: its samples stand on another grid, up to " +
+               short_number(off) + " grid units beside the terrain's",
+           file.path);
   }
 }
 
@@ -252,9 +251,12 @@ std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string
     file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
                                       nullptr, nullptr));
     if (!file.data) require_readable(path);
-    // GDAL's XYZ driver reads some point files as rasters; text is left to the reader of points.
-    if (!file.data || file.data->GetRasterCount() < 1 || EQUAL(file.data->GetDriverName(), "XYZ"))
-      return nullptr;
+    if (!file.data || file.data->GetRasterCount() < 1) {
+      refuse(
+          "neither a raster that GDAL reads nor points, a TIN or a layer; name the inputs of the "
+          "build behind --against",
+          path);
+    }
     choose_bands(file);
     file.backed = open_with_background(*file.data, "nan");
     if (file.backed && file.backed->GetRasterCount() > file.data->GetRasterCount())

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "engine/query/shape/tiler.h"
+
 namespace ptin::tools {
 
 namespace {
@@ -18,21 +20,6 @@ bool is_single(const GridBox& box) { return box.min_x == box.max_x && box.min_y 
 
 }  // namespace
 
-std::array<GridBox, 2> halves_of(const GridBox& box) {
-  const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
-  const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
-  GridBox low = box;
-  GridBox high = box;
-  if (width >= height) {
-    low.max_x = static_cast<std::int32_t>(box.min_x + width / 2);
-    high.min_x = low.max_x + 1;
-  } else {
-    low.max_y = static_cast<std::int32_t>(box.min_y + height / 2);
-    high.min_y = low.max_y + 1;
-  }
-  return {low, high};
-}
-
 SortedSamples::SortedSamples(const StoreFacts& facts, const ExternalMemory& memory, PointMerge rule)
     : facts_(facts), memory_(memory), rule_(rule) {
   memory_.bytes /= 2;
@@ -43,7 +30,7 @@ std::uint64_t SortedSamples::key_of(GridPoint p) const {
   GridBox box = facts_.bounds;
   std::uint64_t key = 0;
   for (int bit = kKeyBits - 1; !is_single(box); --bit) {
-    const auto halves = halves_of(box);
+    const auto halves = divided(box);
     const bool high = contains(halves[1], p);
     key |= static_cast<std::uint64_t>(high) << bit;
     box = halves[high ? 1 : 0];
@@ -53,7 +40,7 @@ std::uint64_t SortedSamples::key_of(GridPoint p) const {
 
 GridPoint SortedSamples::point_of(std::uint64_t key) const {
   GridBox box = facts_.bounds;
-  for (int bit = kKeyBits - 1; !is_single(box); --bit) box = halves_of(box)[(key >> bit) & 1];
+  for (int bit = kKeyBits - 1; !is_single(box); --bit) box = divided(box)[(key >> bit) & 1];
   return {box.min_x, box.min_y};
 }
 
@@ -171,7 +158,7 @@ void SortedSamples::visit_runs(const GridBox& box, const Visit& visit) const {
       visit(run, is_inside);
       continue;
     }
-    const auto halves = halves_of(run.box);
+    const auto halves = divided(run.box);
     const std::uint64_t key = run.key | std::uint64_t{1} << (kKeyBits - 1 - run.depth);
     const std::uint64_t middle = find(key);
     open.push_back({halves[0], run.key, run.depth + 1, run.begin, middle});

@@ -4,7 +4,6 @@
 // fit in memory, in an order in which the samples of a window lie together.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -17,13 +16,9 @@
 
 namespace ptin::tools {
 
-/// The two halves of a box that is cut across its longer side: the lower (or left) one first.
-/// REQUIRES: the box has two grid points or more.
-[[nodiscard]] std::array<GridBox, 2> halves_of(const GridBox& box);
-
 /// Sorted samples: add() all samples, sort() once, then count() and read(). One thread.
 ///
-/// A key tells where a sample lies: the bounds are halved again and again, as halves_of() does,
+/// A key tells where a sample lies: the bounds are halved again and again, as divided() does,
 /// down to single grid points, 64 times at most. Which half holds the point is one bit of its key
 /// each time. So the samples of a box that comes from halving the bounds are one run of the sorted
 /// ones; the samples of another box are in several runs.
@@ -70,7 +65,7 @@ class SortedSamples {
   struct Together {
     NumberedRecord first{};
     double lowest = 0.0, highest = 0.0;
-    double sum = 0.0;  ///< Of code_of().
+    double sum = 0.0;  ///< Sum of code_of().
     std::uint64_t count = 0;
   };
 
@@ -101,7 +96,7 @@ class SortedSamples {
   ExternalMemory memory_;
   PointMerge rule_;
   std::unique_ptr<Sorter> sorter_;
-  std::uint64_t size_ = 0;  ///< Of sorted records.
+  std::uint64_t size_ = 0;  ///< Number of sorted records.
   /// All sorted records, or those that are not in the file yet.
   std::vector<Record> records_;
   std::unique_ptr<ScratchFile> file_;  ///< All records, when memory is too small.

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/read/input_kind.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
@@ -29,37 +30,29 @@ std::optional<double> nodata_of(const nlohmann::json& value) {
 }  // namespace
 
 SampleChoices choices_of(const StoreFile& store) {
-  const nlohmann::json metadata = metadata_of(store);
-  const auto it = metadata.find("options");
-  const nlohmann::json options =
-      it != metadata.end() && it->is_object() ? *it : nlohmann::json::object();
-  SampleChoices choices;
-  if (const auto nodata = options.find("nodata"); nodata != options.end()) {
-    choices.nodata = nodata_of(*nodata);
-  }
-  if (const auto slope = options.find("void_slope"); slope != options.end() && slope->is_number()) {
-    choices.void_slope = slope->get<double>();
-  }
-  if (const auto step = options.find("resolution"); step != options.end() && step->is_number()) {
-    choices.resolution = step->get<double>();
-  }
-  if (const auto edge = options.find("max_edge"); edge != options.end() && edge->is_number()) {
-    choices.max_edge = edge->get<double>();
-  }
-  if (const auto classes = options.find("classes");
-      classes != options.end() && classes->is_array()) {
-    for (const auto& c : *classes) {
-      if (c.is_number_integer()) choices.points.classes.push_back(c.get<int>());
-    }
-  }
-  const auto text = [&](const char* name) {
+  const nlohmann::json options = options_of_build(store);
+  const auto of_name = [&](const char* name) {
     const auto found = options.find(name);
-    return found != options.end() && found->is_string() ? found->get<std::string>() : "";
+    return found != options.end() ? *found : nlohmann::json();
   };
-  if (const auto names = options.find("columns"); names != options.end() && names->is_array()) {
-    for (const auto& name : *names) {
-      if (name.is_string()) choices.points.columns.push_back(name.get<std::string>());
-    }
+  const auto number = [&](const char* name) {
+    const nlohmann::json value = of_name(name);
+    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+  };
+  const auto text = [&](const char* name) {
+    const nlohmann::json value = of_name(name);
+    return value.is_string() ? value.get<std::string>() : "";
+  };
+  SampleChoices choices;
+  choices.nodata = nodata_of(of_name("nodata"));
+  choices.void_slope = number("void_slope").value_or(0.0);
+  choices.resolution = number("resolution");
+  choices.max_edge = number("max_edge");
+  for (const nlohmann::json& c : of_name("classes")) {
+    if (c.is_number_integer()) choices.points.classes.push_back(c.get<int>());
+  }
+  for (const nlohmann::json& name : of_name("columns")) {
+    if (name.is_string()) choices.points.columns.push_back(name.get<std::string>());
   }
   const std::string returns = text("returns"), duplicates = text("duplicates");
   if (returns == "first") choices.points.returns = ReturnChoice::kFirst;
@@ -67,15 +60,15 @@ SampleChoices choices_of(const StoreFile& store) {
   if (duplicates == "min") choices.duplicates = PointMerge::kLowest;
   if (duplicates == "max") choices.duplicates = PointMerge::kHighest;
   if (duplicates == "first") choices.duplicates = PointMerge::kFirst;
-  const auto skips = options.find("skip_invalid");
-  choices.points.skip_invalid = skips != options.end() && skips->is_boolean() && skips->get<bool>();
+  choices.points.skip_invalid = of_name("skip_invalid") == true;
   choices.points.layer = text("layer");
   choices.points.z_field = text("z_field");
-  if (const auto bbox = options.find("bbox");
-      bbox != options.end() && bbox->is_array() && bbox->size() == 4) {
-    choices.bbox = store.facts().bounds;
-    if (std::all_of(bbox->begin(), bbox->end(), [](const auto& v) { return v.is_number(); })) {
-      choices.asked_bbox = bbox->get<std::array<double, 4>>();
+  if (const nlohmann::json bbox = of_name("bbox"); bbox.is_array() && bbox.size() == 4) {
+    choices.bbox.emplace();
+    for (std::size_t i = 0; i < 4; ++i) {
+      // JSON has no infinite numbers: what is none leaves its side open.
+      const double open = (i < 2 ? -1 : 1) * std::numeric_limits<double>::infinity();
+      (*choices.bbox)[i] = bbox[i].is_number() ? bbox[i].get<double>() : open;
     }
   }
   return choices;
@@ -106,10 +99,9 @@ void check_extent(const SourceExtent& extent, const std::vector<std::string>& pa
                                      ", the terrain's from " +
                                      text(b.min_x, b.min_y, b.max_x, b.max_y)
                                : "it holds no sample";
-  throw Error(ErrorCode::invalid_argument,
-              "not the source of this file: " + what +
-                  "; name every input of the build behind --against, and no other",
-              inputs_text(paths));
+  refuse("not the source of this file: " + what +
+             "; name every input of the build behind --against, and no other",
+         inputs_text(paths));
 }
 
 namespace {
@@ -122,25 +114,35 @@ void check_all_there(const std::vector<std::string>& paths) {
   }
 }
 
+bool are_rasters(const std::vector<std::string>& paths, const StoreFile& store) {
+  const PointChoice choice = choices_of(store).points;
+  return std::all_of(paths.begin(), paths.end(), [&](const std::string& path) {
+    return kind_of_input(path, choice) == InputKind::kRaster;
+  });
+}
+
 }  // namespace
 
 void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
                      const SampleResources& resources) {
   check_all_there(paths);
-  if (!open_raster_samples(paths, store)) check_first_points(paths, store, resources);
+  if (are_rasters(paths, store)) {
+    static_cast<void>(open_raster_samples(paths, store));
+  } else {
+    check_first_points(paths, store, resources);
+  }
 }
 
 std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
                                             const StoreFile& store,
                                             const SampleResources& resources) {
   check_all_there(paths);
-  std::unique_ptr<SourceSamples> samples = open_raster_samples(paths, store);
-  if (samples && !resources.lines.is_empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "--breaklines and --boundary are for points, and this is a raster; leave them out",
-                paths.front());
+  if (!are_rasters(paths, store)) return open_point_samples(paths, store, resources);
+  if (!resources.lines.is_empty()) {
+    refuse("--breaklines and --boundary are for points, and this is a raster; leave them out",
+           paths.front());
   }
-  return samples ? std::move(samples) : open_point_samples(paths, store, resources);
+  return open_raster_samples(paths, store);
 }
 
 }  // namespace ptin::tools

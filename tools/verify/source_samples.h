@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The samples of a source on a terrain's grid, for `verify --against`. Rasters are read with GDAL
-// and text with a reader of its own, so that nothing is shared with the builder that is verified.
-// Only LAS, TINs and layers come through the builder's readers.
+// The samples of a source on a terrain's grid, for `verify --against`. Points and lines come through
+// the builder's readers, rasters through GDAL. Where they lie on the grid, which of them are void or
+// left out, and what several on one grid point come to is decided by code that the builder does not
+// use.
 #pragma once
 
 #include <algorithm>
@@ -30,12 +31,11 @@ namespace ptin::tools {
 /// Choices of the build that decide which samples there are; from the metadata of the store.
 struct SampleChoices {
   PointChoice points;
-  PointMerge duplicates = PointMerge::kMean;  ///< Of points that fall together.
+  PointMerge duplicates = PointMerge::kMean;  ///< How points that fall together are merged.
   std::optional<double> nodata;
   std::optional<double> resolution;  ///< Points: the grid's step in CRS units, if it was chosen.
-  std::optional<GridBox> bbox;       ///< Samples outside were left out.
-  /// The box that was asked for, map units: min x, min y, max x, max y.
-  std::optional<std::array<double, 4>> asked_bbox;
+  /// Samples outside were left out; map units: min x, min y, max x, max y.
+  std::optional<std::array<double, 4>> bbox;
   double void_slope = 0.0;  ///< 0: nothing bounds how far the border of voids moves.
   /// Points: triangles with an edge that is longer on the ground are void.
   std::optional<double> max_edge;
@@ -81,7 +81,7 @@ void check_extent(const SourceExtent& extent, const std::vector<std::string>& pa
 /// Several inputs in a few words: the first one, and how many more there are.
 [[nodiscard]] std::string inputs_text(const std::vector<std::string>& paths);
 
-/// Lines of text that are no points.
+/// Rows of text that are no points.
 struct Misfits {
   static constexpr std::size_t kKept = 1000;
   std::vector<std::string> first;  ///< In words, at most kKept.
@@ -106,7 +106,7 @@ class SourceSamples {
   [[nodiscard]] virtual std::uint64_t count(const GridBox& box) = 0;
   /// The lines that the source was built with; null where it has none.
   [[nodiscard]] virtual const LineSamples* lines() const { return nullptr; }
-  /// Lines of text that are no points.
+  /// Rows of text that are no points.
   [[nodiscard]] const Misfits& misfits() const noexcept { return misfits_; }
 
  protected:
@@ -128,9 +128,9 @@ struct SampleResources {
                                                           const StoreFile& store,
                                                           const SampleResources& resources);
 
-/// Refuses what is the source of another terrain as far as a short look tells: the grid and the extent
-/// of rasters; of points, that none of the first few thousand lies on the terrain. Cheap, whatever
-/// the size of the source.
+/// Refuses what is the source of another terrain as far as a short look shows: the grid and the
+/// extent of rasters; of points, that none of the first few thousand lies on the terrain. Cheap,
+/// whatever the size of the source.
 /// @throws Error as open_samples()
 void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
                      const SampleResources& resources);
@@ -139,8 +139,8 @@ void check_is_source(const std::vector<std::string>& paths, const StoreFile& sto
 void check_first_points(const std::vector<std::string>& paths, const StoreFile& store,
                         const SampleResources& resources);
 
-/// The two kinds of sources; open_samples() chooses. open_raster_samples() returns null when GDAL
-/// does not know one of the files as a raster; a file that cannot be read is an error.
+/// The two kinds of sources; open_samples() chooses, by the kind that the builder would take the inputs
+/// for.
 [[nodiscard]] std::unique_ptr<SourceSamples> open_raster_samples(
     const std::vector<std::string>& paths, const StoreFile& store);
 [[nodiscard]] std::unique_ptr<SourceSamples> open_point_samples(

@@ -8,13 +8,14 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
+#include "engine/query/shape/tiler.h"
 #include "engine/stop.h"
 #include "tools/facts/human.h"
 #include "tools/verify/border_lines.h"
-#include "tools/verify/line_points.h"
 #include "tools/verify/lone_points.h"
 #include "tools/verify/scan_triangle.h"
 #include "tools/verify/sorted_samples.h"
+#include "tools/verify/surface_points.h"
 
 namespace ptin::tools {
 
@@ -28,13 +29,6 @@ struct Finding {
   bool in_closed_void = false;
   bool covered = false;
   std::uint8_t open_triangles = 0;
-};
-
-/// A point between samples, and its height in the full TIN and in a coarser one.
-struct Probe {
-  double x = 0.0, y = 0.0;  ///< Grid.
-  double full = std::numeric_limits<double>::quiet_NaN();
-  double coarse = std::numeric_limits<double>::quiet_NaN();
 };
 
 class Verifier {
@@ -77,16 +71,13 @@ class Verifier {
   void judge_border(const GridBox& box, double allowed, ToleranceCheck& check);
   void judge_lines(const BorderLines& from, const BorderLines& to, const GridBox& box,
                    double allowed, const char* what, ToleranceCheck& check);
-  void place_probes(const GridBox& box, std::vector<Probe>& probes);
-  void measure_probes(const Tin& tin, std::vector<Probe>& probes, double Probe::*height) const;
-  void judge_lines_of(const Tin& tin, const std::vector<LinePoint>& points, double allowed,
+  [[nodiscard]] std::vector<SurfacePoint> random_points(const GridBox& box);
+  void judge_lines_of(const Tin& tin, const std::vector<SurfacePoint>& points, double allowed,
                       ToleranceCheck& check);
-  void judge_probes(const GridBox& box, const std::vector<Probe>& probes, const RefinedTin& refined,
-                    double allowed, ToleranceCheck& check);
+  void judge_random_points(const GridBox& box, const std::vector<SurfacePoint>& points,
+                           const RefinedTin& refined, double allowed, ToleranceCheck& check);
   void fault(ToleranceCheck* check, std::string what);
   [[nodiscard]] std::string place_text(double x, double y) const;
-  [[nodiscard]] double height_in(const Tin& tin, TriangleId t,
-                                 const std::array<double, 3>& weights) const;
   [[nodiscard]] std::vector<GridBox> windows();
 
   const Terrain& terrain_;
@@ -98,7 +89,7 @@ class Verifier {
   double slack_ = 0.0;
   bool is_grid_ = false;  ///< The source is a raster.
   AgainstReport report_;
-  std::optional<BorderLines> border_;  ///< Of the source, in and around the window at hand.
+  std::optional<BorderLines> border_;  ///< The source's border, in and around the window at hand.
   std::mt19937_64 random_{20260101};
 };
 
@@ -121,28 +112,19 @@ std::string Verifier::place_text(double x, double y) const {
   return text;
 }
 
+/// A raster is cut into squares of samples; points are halved until few enough are in each window.
 std::vector<GridBox> Verifier::windows() {
-  // A raster is cut into squares of samples; points are halved until few enough are in each window.
-  std::vector<GridBox> boxes;
-  std::vector<GridBox> open{facts_.bounds};
   is_grid_ = source_.read(box_of(GridPoint{facts_.bounds.min_x, facts_.bounds.min_y})).is_grid;
-  while (!open.empty()) {
+  std::vector<GridBox> boxes;
+  work_in_parts(facts_.bounds, [&](const GridBox& box) {
     stop_if_asked(options_.stop, "verification");
-    const GridBox box = open.back();
-    open.pop_back();
-    const std::int64_t width = std::int64_t{box.max_x} - box.min_x;
-    const std::int64_t height = std::int64_t{box.max_y} - box.min_y;
-    const bool small =
-        is_grid_ ? std::max(width, height) < options_.window_side
-                 : std::max(width, height) < 2 || source_.count(box) <= options_.samples_per_window;
-    if (small) {
-      boxes.push_back(box);
-      continue;
-    }
-    const auto [low, high] = halves_of(box);
-    open.push_back(high);
-    open.push_back(low);
-  }
+    const std::int64_t side =
+        std::max(std::int64_t{box.max_x} - box.min_x, std::int64_t{box.max_y} - box.min_y);
+    const bool is_small = is_grid_ ? side < options_.window_side
+                                   : side < 2 || source_.count(box) <= options_.samples_per_window;
+    if (is_small) boxes.push_back(box);
+    return is_small;
+  });
   return boxes;
 }
 
@@ -290,15 +272,13 @@ void Verifier::check_window(const GridBox& box) {
   drop_lone_points(window);
   border_.reset();
   if (!facts_.free_of_voids) border_.emplace(source_border(window, box));
-  std::vector<Probe> probes;
-  place_probes(box, probes);
-  std::vector<LinePoint> on_lines;
+  const std::vector<SurfacePoint> anywhere = random_points(box);
+  std::vector<SurfacePoint> on_lines;
   if (source_.lines() != nullptr) {
     on_lines = points_along(*source_.lines(), box, [&](GridPoint p) {
       return source_.read(box_of(p)).samples.at(0).height;
     });
   }
-  if (!probes.empty()) measure_probes(refined_in(box, std::nullopt).tin, probes, &Probe::full);
   for (ToleranceCheck& check : report_.checks) {
     const RefinedTin refined = refined_in(box, check.tolerance);
     check.certified_error = std::max(check.certified_error, refined.certified_error);
@@ -312,25 +292,8 @@ void Verifier::check_window(const GridBox& box) {
     judge(window, box, findings(refined.tin, window), allowed, check);
     if (border_) judge_border(box, allowed, check);
     judge_lines_of(refined.tin, on_lines, allowed, check);
-    if (check.tolerance) {
-      measure_probes(refined.tin, probes, &Probe::coarse);
-      judge_probes(box, probes, refined, allowed, check);
-    }
+    if (check.tolerance) judge_random_points(box, anywhere, refined, allowed, check);
   }
-}
-
-double Verifier::height_in(const Tin& tin, TriangleId t,
-                           const std::array<double, 3>& weights) const {
-  double sum = 0.0;
-  double total = 0.0;
-  // Heights are taken relative to the first corner's, so that a vertex and a flat triangle come out
-  // exact.
-  const double base = facts_.heights.height(tin.vertices[tin.triangles[t].v[0]].height);
-  for (std::size_t i = 0; i < 3; ++i) {
-    sum += weights[i] * (facts_.heights.height(tin.vertices[tin.triangles[t].v[i]].height) - base);
-    total += weights[i];
-  }
-  return base + sum / total;
 }
 
 std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& window) const {
@@ -350,7 +313,7 @@ std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& wind
       if (!is_surface) return;
       f.in_closed_surface = true;
       const double height =
-          height_in(tin, t,
+          height_in(tin, t, facts_.heights,
                     {static_cast<double>(weights.w[0]), static_cast<double>(weights.w[1]),
                      static_cast<double>(weights.w[2])});
       const double distance = std::abs(height - window.samples[i].height);
@@ -407,7 +370,7 @@ void Verifier::judge(const SampleWindow& window, const GridBox& box,
 }
 
 /// A file that left detail out does not have its lone points any more, so drop_lone_points() does not
-/// see them. The points around tell: all within four times the longest edge.
+/// see them. The points around decide: all within four times the longest edge.
 bool Verifier::may_be_left_out_as_lone(const SourceSample& sample) {
   if (!choices_.max_edge || facts_.base_error == 0 || source_.lines() != nullptr) return false;
   const GroundSteps steps = ground_steps(facts_.map, ground_, static_cast<double>(sample.y));
@@ -467,52 +430,33 @@ void Verifier::judge_lines(const BorderLines& from, const BorderLines& to, const
   }
 }
 
-void Verifier::place_probes(const GridBox& box, std::vector<Probe>& probes) {
-  if (box.max_x <= box.min_x || box.max_y <= box.min_y) return;
+/// Points anywhere in a box, with the heights of the full TIN; by y.
+std::vector<SurfacePoint> Verifier::random_points(const GridBox& box) {
+  if (box.max_x <= box.min_x || box.max_y <= box.min_y) return {};
   std::uniform_real_distribution<double> x(box.min_x, box.max_x);
   std::uniform_real_distribution<double> y(box.min_y, box.max_y);
-  for (unsigned i = 0; i < options_.random_points; ++i) {
-    Probe probe;
-    probe.x = x(random_);
-    probe.y = y(random_);
-    probes.push_back(probe);
+  std::vector<SurfacePoint> points(options_.random_points);
+  for (SurfacePoint& p : points) {
+    p.x = x(random_);
+    p.y = y(random_);
   }
-  std::sort(probes.begin(), probes.end(), [](const Probe& a, const Probe& b) { return a.y < b.y; });
-}
-
-void Verifier::measure_probes(const Tin& tin, std::vector<Probe>& probes,
-                              double Probe::*height) const {
-  for (Probe& probe : probes) probe.*height = std::numeric_limits<double>::quiet_NaN();
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (tin.classes[t] == TriangleClass::kVoid) continue;
-    const auto& v = tin.triangles[t].v;
-    const std::array<GridPoint, 3> c{tin.position(v[0]), tin.position(v[1]), tin.position(v[2])};
-    const double low = std::min({c[0].y, c[1].y, c[2].y});
-    const double high = std::max({c[0].y, c[1].y, c[2].y});
-    auto it = std::lower_bound(probes.begin(), probes.end(), low,
-                               [](const Probe& p, double y) { return p.y < y; });
-    for (; it != probes.end() && it->y <= high; ++it) {
-      std::array<double, 3> weights{};
-      for (std::size_t i = 0; i < 3; ++i) {
-        const GridPoint p = c[(i + 1) % 3];
-        const GridPoint q = c[(i + 2) % 3];
-        weights[i] = (q.x - p.x) * (it->y - p.y) - (q.y - p.y) * (it->x - p.x);
-      }
-      // Only in the open triangle: a random point on an edge is left out.
-      if (weights[0] > 0 && weights[1] > 0 && weights[2] > 0)
-        (*it).*height = height_in(tin, t, weights);
-    }
-  }
+  std::sort(points.begin(), points.end(),
+            [](const SurfacePoint& a, const SurfacePoint& b) { return a.y < b.y; });
+  const std::vector<double> full =
+      heights_at(refined_in(box, std::nullopt).tin, facts_.heights, points, 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].height = full[i];
+  return points;
 }
 
 /// Whether a TIN is near enough to lines, at points that it takes for surface.
-void Verifier::judge_lines_of(const Tin& tin, const std::vector<LinePoint>& points, double allowed,
-                              ToleranceCheck& check) {
+void Verifier::judge_lines_of(const Tin& tin, const std::vector<SurfacePoint>& points,
+                              double allowed, ToleranceCheck& check) {
+  constexpr double kWider = 1e-7;
   const double rounding = 1e-9 + 1e3 * slack_;  // points on an edge are beside it in doubles
-  const std::vector<double> off = distances_from(tin, facts_.heights, points);
+  const std::vector<double> heights = heights_at(tin, facts_.heights, points, kWider);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!std::isfinite(off[i])) continue;  // void in this TIN
-    const double distance = std::max(0.0, off[i] - rounding);
+    if (std::isnan(heights[i])) continue;  // void in this TIN
+    const double distance = std::max(0.0, std::abs(heights[i] - points[i].height) - rounding);
     check.worst_breakline_error = std::max(check.worst_breakline_error, distance);
     if (distance > allowed) {
       fault(&check, "the breakline at " + place_text(points[i].x, points[i].y) + " is off by " +
@@ -522,21 +466,24 @@ void Verifier::judge_lines_of(const Tin& tin, const std::vector<LinePoint>& poin
   }
 }
 
-void Verifier::judge_probes(const GridBox& box, const std::vector<Probe>& probes,
-                            const RefinedTin& refined, double allowed, ToleranceCheck& check) {
+void Verifier::judge_random_points(const GridBox& box, const std::vector<SurfacePoint>& points,
+                                   const RefinedTin& refined, double allowed,
+                                   ToleranceCheck& check) {
   const double moved = border_moves(allowed);
-  for (const Probe& probe : probes) {
-    if (std::isnan(probe.full) != std::isnan(probe.coarse) && border_ && reaches(box, moved) &&
-        !std::isfinite(border_->distance(probe.x, probe.y, moved))) {
-      fault(&check, "at " + place_text(probe.x, probe.y) + " surface and void are exchanged, " +
+  const std::vector<double> coarse = heights_at(refined.tin, facts_.heights, points, 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfacePoint& p = points[i];
+    if (std::isnan(p.height) != std::isnan(coarse[i]) && border_ && reaches(box, moved) &&
+        !std::isfinite(border_->distance(p.x, p.y, moved))) {
+      fault(&check, "at " + place_text(p.x, p.y) + " surface and void are exchanged, " +
                         "farther than " + short_number(moved) + " from the border");
     }
-    const double deviation = std::abs(probe.full - probe.coarse);
+    const double deviation = std::abs(p.height - coarse[i]);
     if (std::isnan(deviation)) continue;  // Void in one of the two TINs.
     check.worst_deviation = std::max(check.worst_deviation, deviation);
     if (deviation > refined.certified_deviation + slack_) {
-      fault(&check, "at " + place_text(probe.x, probe.y) + " it deviates by " +
-                        short_number(deviation) + " from the full TIN, more than the certified " +
+      fault(&check, "at " + place_text(p.x, p.y) + " it deviates by " + short_number(deviation) +
+                        " from the full TIN, more than the certified " +
                         short_number(refined.certified_deviation));
     }
   }

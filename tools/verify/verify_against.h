@@ -3,7 +3,7 @@
 // `verify --against`: the promises of a file, checked at every sample of its source.
 //
 // Independent of the builder: samples are read here, triangles are scanned over them in integers
-// here, distances to borders are measured here. Of the library only refine() is used,
+// here, distances to borders are measured here. The library's refine() alone is used,
 // since it is what is being verified.
 #pragma once
 
@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/verify/source_samples.h"
 
 namespace ptin::tools {
@@ -32,7 +32,7 @@ struct ToleranceCheck {
   std::uint64_t void_samples = 0;
   /// Those of void_samples that have a height, but touch no surface triangle of the full TIN.
   std::uint64_t lone_samples = 0;
-  std::uint64_t reclassified = 0;  ///< Of the wrong class, but near enough to the border.
+  std::uint64_t reclassified = 0;  ///< Samples of the wrong class, but near enough to the border.
   /// The largest distance found between the border of voids in the source and in the TIN, whichever
   /// way it is measured; ground units.
   double worst_border_move = 0.0;

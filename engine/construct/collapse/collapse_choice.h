@@ -30,7 +30,7 @@ class CollapseChooser {
  public:
   /// Chooses for the centre of `s`. Fills `s.source` where it must decide exactly whether an error
   /// is 0.
-  /// @param full  As for measure_with_voids().
+  /// @param full  That of measure_with_voids().
   /// @param s     As gather_star() leaves it.
   /// Cost: the square of the degree for screening, which computes the residual of u alone for each
   /// w; then, for most stars, one pass over all samples for the best w, and a few lanes for one or
@@ -70,7 +70,7 @@ class CollapseChooser {
   bool screened_ = false;  ///< Whether the candidates' screens are known.
   FanFrame fan_;
   const FullSurface* full_ = nullptr;
-  bool has_fixed_edges_ = false;  ///< Of `full_`.
+  bool has_fixed_edges_ = false;  ///< Whether `full_` has any.
 };
 
 }  // namespace ptin

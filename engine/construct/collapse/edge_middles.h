@@ -17,7 +17,7 @@ namespace ptin {
 /// place in an array.
 class EdgeMiddles {
  public:
-  /// @param box  Of the mesh. Memory: 16 bytes for each grid point in it.
+  /// @param box  Box of the mesh. Memory: 16 bytes for each grid point in it.
   explicit EdgeMiddles(const GridBox& box)
       : box_(box),
         width_(2 * steps(box.min_x, box.max_x) + 1),

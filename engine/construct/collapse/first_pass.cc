@@ -112,7 +112,7 @@ class FirstPass {
   std::vector<std::uint8_t> is_free_;  ///< 1 for a sample that is no vertex and in no list yet.
   std::vector<VertexId> place_;        ///< The vertex of each sample; kNone for the others.
   Tile tile_;
-  std::vector<double> gap_;  ///< Beside the triangles: the largest gap along their edges, codes.
+  std::vector<double> gap_;  ///< The largest gap along each triangle's edges, codes.
   std::unordered_multimap<VertexKey, Sample> directed_;  ///< Witnesses of triangles, by vertex.
   std::vector<Sample> list_;                             ///< Samples of the triangle at hand.
   double worst_ = 0.0;                                   ///< The largest residual in list_, codes.

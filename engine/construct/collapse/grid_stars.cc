@@ -143,8 +143,8 @@ std::uint32_t GridStars::shape_at(std::int32_t x, std::int32_t y) const noexcept
   return north_east | north_west << 1 | south_west << 2 | south_east << 3;
 }
 
-/// As CollapseChooser rounds an error up; nothing where exact arithmetic would have to tell whether
-/// it is 0.
+/// As CollapseChooser rounds an error up; nothing where exact arithmetic would have to decide
+/// whether it is 0.
 std::optional<double> GridStars::certified(double error, double largest_z) const noexcept {
   StarSamples s;
   s.largest_xy = 1.0;

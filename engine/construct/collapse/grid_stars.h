@@ -26,7 +26,7 @@ class GridStars {
     VertexId w;
     double error;  ///< As CollapseChoice::error.
   };
-  /// What CollapseChooser chooses for `u`, up to rounding. Nothing where the table does not tell: on
+  /// What CollapseChooser chooses for `u`, up to rounding. Nothing where the table does not say: on
   /// the border of the box, beside a void or a witness, and where an error of nearly 0 wants exact
   /// arithmetic.
   /// Cost: at most eight residuals.
@@ -39,7 +39,7 @@ class GridStars {
 
   const Tile& tile_;
   std::int32_t width_, height_;
-  std::vector<std::uint8_t> rising_;  ///< Of each cell, by its south-western sample.
+  std::vector<std::uint8_t> rising_;  ///< One for each cell, by its south-western sample.
 };
 
 }  // namespace ptin

@@ -21,8 +21,8 @@ class RecordMaker {
   /// @param tile  Must outlive this object.
   /// @param full  The full surface under a tile that holds all samples of its window: `error` and
   ///     `deviation` of a record are measured to the end and saturated. Null for a tile that holds
-  ///     witnesses: `error` of a record is its own part alone and `deviation` is 0; tightening does
-  ///     the rest (construct/hierarchy/tighten.h).
+  ///     carried samples: `error` of a record is its own part alone and `deviation` is 0; the rest is
+  ///     for tightening (construct/hierarchy/tighten.h).
   RecordMaker(Tile& tile, const FullSurface* full) : tile_(tile), full_(full) {}
 
   /// Collapses the centre of `s` into link[j]: appends the record (its own part, and the union and

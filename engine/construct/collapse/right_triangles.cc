@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "engine/geometry/point.h"
+
 namespace ptin {
 
 namespace {
@@ -18,10 +20,6 @@ constexpr std::int32_t kSquare = std::int32_t{1} << kDoublings;
 /// for finer corners up to s away, which ask for less. So kDecidingMargin is enough, and being twice
 /// this it leaves the diagonals of squares as they are.
 constexpr std::int32_t kKeptOnSides = 8;
-
-struct Position {
-  std::int32_t x, y;
-};
 
 /// The part of a window that squares cover.
 std::int32_t covered(std::int32_t samples) { return (samples - 1) / kSquare * kSquare; }
@@ -57,10 +55,10 @@ bool row_is_of_class(const SampleGrid& grid, const Row& row, std::uint8_t valid)
 /// A triangle as rows of samples: `rows` of them, at apex.y, apex.y + up and so on. The first goes
 /// from column `left` to column `right`; from row to row these move by left_step and right_step.
 struct Shape {
-  Position apex;
+  GridPoint apex;
   std::int32_t rows, up;
   std::int32_t left, right, left_step, right_step;
-  double slope_x, slope_y;  ///< Of the plane, codes a cell.
+  double slope_x, slope_y;  ///< Slopes of the plane, codes a cell.
 };
 
 /// True when all samples of the triangle have a height and residuals within the tolerance, or none
@@ -89,7 +87,7 @@ bool is_within(const SampleGrid& grid, const Shape& shape, double tolerance) {
 class Thinning {
  public:
   /// @param end  Corners in columns and rows below are thinned, but for column and row 0.
-  Thinning(const SampleGrid& grid, Position end, double tolerance,
+  Thinning(const SampleGrid& grid, GridPoint end, double tolerance,
            std::vector<std::uint8_t>& needed)
       : grid_(grid), tolerance_(tolerance), needed_(needed), width_(end.x), height_(end.y) {}
 
@@ -110,11 +108,11 @@ class Thinning {
   }
   void thin_sides(std::int32_t side);
   void thin_centres(std::int32_t side);
-  [[nodiscard]] bool side_is_free(Position m, std::int32_t side) const;
-  [[nodiscard]] bool centre_is_free(Position m, std::int32_t side) const;
-  [[nodiscard]] bool holds_row(Position m, std::int32_t side, std::int32_t up) const;
-  [[nodiscard]] bool holds_column(Position m, std::int32_t side, std::int32_t right) const;
-  [[nodiscard]] bool holds_corner(Position apex, std::int32_t side, std::int32_t right,
+  [[nodiscard]] bool side_is_free(GridPoint m, std::int32_t side) const;
+  [[nodiscard]] bool centre_is_free(GridPoint m, std::int32_t side) const;
+  [[nodiscard]] bool holds_row(GridPoint m, std::int32_t side, std::int32_t up) const;
+  [[nodiscard]] bool holds_column(GridPoint m, std::int32_t side, std::int32_t right) const;
+  [[nodiscard]] bool holds_corner(GridPoint apex, std::int32_t side, std::int32_t right,
                                   std::int32_t up) const;
 
   const SampleGrid& grid_;
@@ -125,7 +123,7 @@ class Thinning {
 
 /// Whether a triangle is within the tolerance: its hypotenuse goes along the row from (m.x - side,
 /// m.y) to (m.x + side, m.y), and its apex lies `side` rows above (`up` is 1) or below (-1).
-bool Thinning::holds_row(Position m, std::int32_t side, std::int32_t up) const {
+bool Thinning::holds_row(GridPoint m, std::int32_t side, std::int32_t up) const {
   const std::int32_t y = m.y + up * side;
   const double west = code(m.x - side, m.y), east = code(m.x + side, m.y);
   const double across = (east - west) / (2.0 * side);
@@ -135,7 +133,7 @@ bool Thinning::holds_row(Position m, std::int32_t side, std::int32_t up) const {
 
 /// The same with the hypotenuse along the column from (m.x, m.y - side) to (m.x, m.y + side), and
 /// the apex to the east (`right` is 1) or west (-1). Two halves, from the row of the apex.
-bool Thinning::holds_column(Position m, std::int32_t side, std::int32_t right) const {
+bool Thinning::holds_column(GridPoint m, std::int32_t side, std::int32_t right) const {
   const std::int32_t x = m.x + right * side;
   const double south = code(m.x, m.y - side), north = code(m.x, m.y + side);
   const double along = (north - south) / (2.0 * side);
@@ -150,7 +148,7 @@ bool Thinning::holds_column(Position m, std::int32_t side, std::int32_t right) c
 
 /// The same for half of a square of 2 * side with its right angle at `apex`: its legs go east or
 /// west (`right`) and north or south (`up`).
-bool Thinning::holds_corner(Position apex, std::int32_t side, std::int32_t right,
+bool Thinning::holds_corner(GridPoint apex, std::int32_t side, std::int32_t right,
                             std::int32_t up) const {
   const std::int32_t length = 2 * side;
   const std::int32_t x = apex.x + right * length;
@@ -165,7 +163,7 @@ bool Thinning::holds_corner(Position apex, std::int32_t side, std::int32_t right
 
 /// Whether the middle m of a hypotenuse along a row or a column can go: no smaller triangle needs
 /// it, and the triangles on both sides are within the tolerance.
-bool Thinning::side_is_free(Position m, std::int32_t side) const {
+bool Thinning::side_is_free(GridPoint m, std::int32_t side) const {
   if (side > 1) {
     const std::int32_t h = side / 2;
     if (is_needed(m.x - h, m.y - h) || is_needed(m.x + h, m.y - h) || is_needed(m.x - h, m.y + h) ||
@@ -181,7 +179,7 @@ bool Thinning::side_is_free(Position m, std::int32_t side) const {
 
 /// The same for the middle of a square of 2 * side. The diagonal of the square joins the two
 /// corners whose column and row, counted in such squares, have an even sum.
-bool Thinning::centre_is_free(Position m, std::int32_t side) const {
+bool Thinning::centre_is_free(GridPoint m, std::int32_t side) const {
   if (is_needed(m.x - side, m.y) || is_needed(m.x + side, m.y) || is_needed(m.x, m.y - side) ||
       is_needed(m.x, m.y + side)) {
     return false;
@@ -228,18 +226,18 @@ class Halving {
  private:
   /// Adds the triangle with the right angle at `apex`, or its halves where the middle of its
   /// hypotenuse from a to b is needed. `apex`, `a` and `b` are counter-clockwise.
-  void add(Position apex, Position a, Position b);
-  void add_half_cell(Position apex, Position a, Position b);
-  void add_square(Position corner);
+  void add(GridPoint apex, GridPoint a, GridPoint b);
+  void add_half_cell(GridPoint apex, GridPoint a, GridPoint b);
+  void add_square(GridPoint corner);
   void add_cell(std::int32_t x, std::int32_t y);
   [[nodiscard]] std::array<RightTriangle, 2> halves(std::int32_t x, std::int32_t y) const;
-  [[nodiscard]] std::uint32_t number(Position p) const {
+  [[nodiscard]] std::uint32_t number(GridPoint p) const {
     return static_cast<std::uint32_t>(grid_.at(p.x, p.y));
   }
 
   const SampleGrid& grid_;
   std::span<const std::uint8_t> needed_;
-  std::vector<std::uint32_t> other_half_;  ///< Of each cell: 1 + its half in triangles_; or 0.
+  std::vector<std::uint32_t> other_half_;  ///< 1 + each cell's half in triangles_; or 0.
   std::vector<RightTriangle> triangles_;
 };
 
@@ -257,7 +255,7 @@ void Halving::add_cell(std::int32_t x, std::int32_t y) {
   triangles_.insert(triangles_.end(), both.begin(), both.end());
 }
 
-void Halving::add_half_cell(Position apex, Position a, Position b) {
+void Halving::add_half_cell(GridPoint apex, GridPoint a, GridPoint b) {
   const std::int32_t x = std::min(a.x, b.x), y = std::min(a.y, b.y);
   std::uint32_t& other = other_half_[grid_.at(x, y)];
   if (other == 0) {
@@ -270,12 +268,12 @@ void Halving::add_half_cell(Position apex, Position a, Position b) {
   triangles_.push_back(both[1]);
 }
 
-void Halving::add(Position apex, Position a, Position b) {
+void Halving::add(GridPoint apex, GridPoint a, GridPoint b) {
   if (std::abs(a.x - b.x) == 1) {
     add_half_cell(apex, a, b);
     return;
   }
-  const Position middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
+  const GridPoint middle{(a.x + b.x) / 2, (a.y + b.y) / 2};
   if (needed_[grid_.at(middle.x, middle.y)] == 0) {
     triangles_.push_back({number(apex), number(a), number(b)});
     return;
@@ -284,9 +282,9 @@ void Halving::add(Position apex, Position a, Position b) {
   add(middle, b, apex);
 }
 
-void Halving::add_square(Position corner) {
-  const Position a = corner, b{a.x + kSquare, a.y}, c{b.x, a.y + kSquare}, d{a.x, c.y};
-  const Position centre{a.x + kSquare / 2, a.y + kSquare / 2};
+void Halving::add_square(GridPoint corner) {
+  const GridPoint a = corner, b{a.x + kSquare, a.y}, c{b.x, a.y + kSquare}, d{a.x, c.y};
+  const GridPoint centre{a.x + kSquare / 2, a.y + kSquare / 2};
   if (needed_[grid_.at(centre.x, centre.y)] != 0) {
     add(centre, a, b);
     add(centre, b, c);
@@ -333,8 +331,8 @@ std::vector<std::uint8_t> needed_corners(const SurroundedGrid& grid, double tole
   const SampleGrid& window = grid.window;
   const SampleGrid& around = grid.around;
   std::vector<std::uint8_t> finest(around.codes.size(), 1);
-  const Position end{end_of_thinning(window.width, grid.x, around.width),
-                     end_of_thinning(window.height, grid.y, around.height)};
+  const GridPoint end{end_of_thinning(window.width, grid.x, around.width),
+                      end_of_thinning(window.height, grid.y, around.height)};
   Thinning(around, end, tolerance, finest).run(1, kKeptOnSides);
   std::vector<std::uint8_t> needed(window.codes.size());
   for (std::int32_t y = 0; y < window.height; ++y) {

@@ -43,7 +43,7 @@ struct SurroundedGrid {
 /// As far beyond a side of the window, samples decide which corners on it are needed.
 inline constexpr std::int32_t kDecidingMargin = 16;
 
-/// For each sample of the window 1 where it is needed as a corner, else 0. Of a triangle that is
+/// For each sample of the window 1 where it is needed as a corner, else 0. In a triangle that is
 /// larger than half a cell either all samples have a height and residuals of at most `tolerance` (up
 /// to rounding), or none has a height. So that windows join without cracks, a side of the window
 /// keeps its samples where nothing lies around it. Else it keeps every eighth, and of the others those

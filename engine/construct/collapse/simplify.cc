@@ -18,7 +18,8 @@
 // 4. compact_when_sparse() comes before a vertex is taken, when nobody holds an id but state_,
 //    target_ and the queue, which get the new ones.
 // 5. prefetch_upcoming() asks for the memory of the stars whose turn is near; it decides nothing.
-// With witnesses (no full surface) the loop is the same, but lists are cut down at each compaction.
+// With carried samples (no full surface) the loop is the same, but lists are cut down at each
+// compaction.
 #include "engine/construct/collapse/simplify.h"
 
 #include <algorithm>
@@ -94,7 +95,7 @@ class Simplifier {
   Tile& tile_;
   const SimplifyOptions& options_;
   const FullSurface* full_;
-  bool is_capped_;             ///< Lists are cut down to witnesses at each compaction: no `full`.
+  bool is_capped_;             ///< Lists are cut down at each compaction: no `full`.
   std::size_t first_samples_;  ///< Samples in all lists at the beginning.
   RecordMaker maker_;
   CollapseChooser chooser_;
@@ -102,7 +103,7 @@ class Simplifier {
   CollapseQueue queue_;
   StarSamples star_;
   std::vector<QueueState> state_;
-  std::vector<VertexId> target_;  ///< Of a clean vertex: the chosen w.
+  std::vector<VertexId> target_;  ///< The chosen w of a clean vertex.
   std::uint64_t left_ = 0;        ///< Vertices that are neither locked nor gone.
   std::uint64_t alive_ = 0;       ///< Vertices that are not gone.
   std::uint64_t collapsed_ = 0;
@@ -154,7 +155,7 @@ Simplifier::Evaluation Simplifier::evaluate(VertexId u) {
   return e;
 }
 
-/// The first measure of a star of the full TIN of a raster; nothing where the table does not tell.
+/// The first measure of a star of the full TIN of a raster; nothing where the table does not say.
 std::optional<Simplifier::FirstMeasure> Simplifier::measure_on_grid(const GridStars& grid,
                                                                     VertexId u) const {
   const auto choice = grid.choose(u);

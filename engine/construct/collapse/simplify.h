@@ -45,8 +45,8 @@ struct SimplifyOptions {
 /// Deterministic. Cost: about n log n residuals for n samples. One thread.
 void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& options);
 
-/// The same for a tile that holds witnesses instead of all samples. The `error` of a record is its
-/// own part alone, measured over the witnesses, and its `deviation` is 0. Tightening does the rest
+/// The same for a tile that holds carried samples instead of all. The `error` of a record is its
+/// own part alone, measured over these, and its `deviation` is 0. Tightening does the rest
 /// (construct/hierarchy/tighten.h).
 void simplify_witnesses(Tile& tile, const SimplifyOptions& options);
 

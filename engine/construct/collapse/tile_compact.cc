@@ -23,7 +23,8 @@ void lay_out_samples(Tile& tile) {
 namespace {
 
 /// Moves lists up in place, in the order that they have, and cuts them down to `most` samples. In a
-/// tile of witnesses lists are most of the memory, and lay_out_samples() would have them twice.
+/// tile of carried samples lists are most of the memory, and lay_out_samples() would have them
+/// twice.
 void close_gaps_of_samples(Tile& tile, std::size_t most) {
   std::vector<SampleSlot*> slots;
   std::vector<Sample> chosen;

@@ -17,7 +17,7 @@ inline constexpr std::size_t kAllSamples = std::numeric_limits<std::size_t>::max
 /// Drops removed vertices and triangles, and the gaps between lists of samples. Vertices and
 /// triangles keep their order, so that whatever is decided by it stays the same. Records are not
 /// touched.
-/// @param most_samples  Longer lists are cut down to their best witnesses
+/// @param most_samples  Longer lists are cut down to their weightiest samples
 ///     (construct/collapse/witness.h), and all lists move up in place. With kAllSamples no list is
 ///     cut, and lay_out_samples() is called instead.
 /// @return  The new index of each former vertex; kNone for a removed one.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Witnesses: the few samples of a triangle that a parent tile takes along (engine/DESIGN.md,
-// section 5.6).
+// Carried samples: the few of a triangle that a parent tile takes along (engine/DESIGN.md, section
+// 5.6).
 #pragma once
 
 #include <cstddef>
@@ -12,21 +12,20 @@
 
 namespace ptin {
 
-/// Witnesses of a triangle that is pushed up.
+/// Carried samples of a triangle that is pushed up.
 inline constexpr std::size_t kWitnessesOfTriangle = 16;
-/// The least and the greatest limit of samples of a triangle while a tile of witnesses is
-/// collapsed. Without a limit the few coarse fans at the end would hold the witnesses of all.
+/// The least and the greatest limit of samples of a triangle while a tile of carried samples is
+/// collapsed. Without a limit the few coarse fans at the end would hold those of all.
 inline constexpr std::size_t kWitnessesInWork = 32;
 inline constexpr std::size_t kMostWitnessesInWork = 1024;
 
 /// Cuts the samples of a triangle down to at most `most`, the weightiest ones, spread over its
 /// corners and over both signs. The weight of a sample with a height in a surface triangle is its
 /// |residual|. The weight of any other sample is what its reach would be charged: so of samples in
-/// the wrong class those that reach farthest stay, and in a void triangle such voids too, which tell a
-/// parent what a surface over them would cost. A block counts as its first sample.
-/// Witnesses order the collapses of the parent and bound nothing: tightening does
-/// (construct/hierarchy/tighten.h). Deterministic. Cost: n log n.
-/// REQUIRES: most >= 6.
+/// the wrong class those that reach farthest stay, and in a void triangle such voids too, which
+/// show a parent what a surface over them would cost. A block counts as its first sample. Carried
+/// samples order the collapses of the parent and bound nothing: tightening does
+/// (construct/hierarchy/tighten.h). Deterministic. Cost: n log n. REQUIRES: most >= 6.
 void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
                       std::size_t most = kWitnessesOfTriangle);
 

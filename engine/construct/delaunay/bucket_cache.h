@@ -24,8 +24,8 @@ class BucketCache {
 
   struct Bucket {
     std::vector<BucketPoint> points;
-    std::vector<std::uint8_t> is_in;  ///< Beside `points`: 1 for a taken one.
-    std::vector<GridBox> boxes;       ///< Of each kBlock points those that are not taken.
+    std::vector<std::uint8_t> is_in;  ///< 1 for each of `points` that is taken.
+    std::vector<GridBox> boxes;       ///< Boxes of what is not taken of each kBlock points.
     bool has_more = false;            ///< Some are taken that were not so from the beginning.
 
     /// True when all points are taken.

@@ -26,8 +26,8 @@ using BaseKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 /// CGAL's kernel with predicates of our own, for points whose coordinates are whole numbers from 0
 /// to 2^30. Orientation is decided in 64 bits; the side of a circle in doubles, and where these do
-/// not tell, in 128 bits. CGAL's own predicates would then use numbers of any length, and on grids,
-/// where most points are cocircular, that is nearly always.
+/// not decide, in 128 bits. CGAL's own predicates would then use numbers of any length, and on
+/// grids, where most points are cocircular, that is nearly always.
 class GridKernel : public BaseKernel {
  public:
   using Point_2 = BaseKernel::Point_2;
@@ -100,8 +100,8 @@ using Delaunay = CGAL::Delaunay_triangulation_2<GridKernel, DataStructure>;
 using Vertex_handle = Triangulation::Vertex_handle;
 using Face_handle = Triangulation::Face_handle;
 
-/// A constrained Delaunay triangulation that tells which vertices have new faces where an edge was
-/// forced. Edges must not cross; they may go through vertices and lie on one another.
+/// A constrained Delaunay triangulation that reports which vertices have new faces where an edge
+/// was forced. Edges must not cross; they may go through vertices and lie on one another.
 class ConstrainedDelaunay
     : public CGAL::Constrained_Delaunay_triangulation_2<
           GridKernel, DataStructure, CGAL::No_constraint_intersection_requiring_constructions_tag> {

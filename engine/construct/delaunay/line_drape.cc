@@ -21,7 +21,7 @@ namespace ptin {
 
 namespace {
 
-/// Points that are triangulated at once.
+/// Points that are triangulated at once: some 16 MB, at 250 bytes each (DelaunayTiler::make()).
 constexpr std::uint64_t kPartPoints = std::uint64_t{1} << 16;
 
 /// Shares that lie closer than this, in grid units along the side, are one.
@@ -41,8 +41,11 @@ GridPoint rounded(GridPoint from, GridPoint to, double share) {
 
 /// A number with so many digits after the point.
 Decimal with_decimals(double value, double step) {
+  // -log10 of a power of ten may lie a little above the whole number: 1e-9 keeps it from another
+  // digit.
   const double digits = std::ceil(-std::log10(step) - 1e-9);
   const int decimals = static_cast<int>(std::clamp(digits, 0.0, 9.0));
+  // A double has up to 309 digits before the point, a sign, and here at most 9 digits behind it.
   char text[400];
   const auto [end, status] =
       std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals);
@@ -74,6 +77,7 @@ void LineDrape::add_sides(const LineSet& set, std::vector<GridBox>& boxes) {
     const auto line = set.line(i);
     for (std::size_t k = 1; k < line.size(); ++k) {
       const Side side{place(line[k - 1]), place(line[k])};
+      // A side shorter than the grid is none: its ends are one vertex.
       if (side.from != side.to) {
         sides_.push_back(side);
         boxes.push_back(united(box_of(side.from), side.to));
@@ -106,6 +110,8 @@ void LineDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number
   for (int i = 0; i < 3; ++i) {
     GridPoint a = tin.position(tin.triangles[t].v[next_corner(i)]);
     GridPoint b = tin.position(tin.triangles[t].v[previous_corner(i)]);
+    // The triangle beyond computes with the same numbers: so both find the same bits, and stretches
+    // meet without a gap.
     const bool turned = key_of(b) < key_of(a);
     if (turned) {
       std::swap(a, b);
@@ -117,6 +123,7 @@ void LineDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number
       return;
     }
     const bool is_line = !part.fixed_sides.empty() && (part.fixed_sides[t] >> i & 1) != 0;
+    // Where both ends are as far from the edge, neither lies out alone, and the share is not used.
     const double share = from / (from - to);
     if (starts_out && share > s.begin) {
       s.begin = share;
@@ -126,6 +133,7 @@ void LineDrape::add(const DelaunayTile& part, TriangleId t, std::uint32_t number
       s.ends_at_line = is_line;
     }
   }
+  // A side that touches a corner alone, or misses by rounding, has no stretch here.
   if (s.end - s.begin > tolerance_of(side.from, side.to)) {
     s.height_at_begin = height_in(tin, t, side, s.begin);
     s.height_at_end = height_in(tin, t, side, s.end);
@@ -150,6 +158,8 @@ void LineDrape::note_crossing(const Side& side, double share) {
 /// The fixed edge that a point lies on, or nearest to; FixedEdges has one at least.
 std::uint32_t LineDrape::edge_at(MapPoint p) const {
   const FixedEdges& fixed = points_.fixed_edges();
+  // Boxes of edges have whole coordinates, so rounding outward meets that of the edge crossed also
+  // where p is a little off.
   const GridBox box{
       static_cast<std::int32_t>(std::floor(p.x)), static_cast<std::int32_t>(std::floor(p.y)),
       static_cast<std::int32_t>(std::ceil(p.x)), static_cast<std::int32_t>(std::ceil(p.y))};
@@ -164,6 +174,7 @@ std::uint32_t LineDrape::edge_at(MapPoint p) const {
                 const double px = p.x - a.x, py = p.y - a.y;
                 const double t = std::clamp((px * ux + py * uy) / (ux * ux + uy * uy), 0.0, 1.0);
                 const double away = std::hypot(px - t * ux, py - t * uy);
+                // The smaller number among equals makes the order of the visits irrelevant.
                 if (away < least || (away == least && e < nearest)) {
                   least = away;
                   nearest = e;
@@ -186,6 +197,7 @@ LineSet LineDrape::divided_lines(bool of_boundary) const {
                       static_cast<double>(cut.second.y) - a.y);
   };
   std::sort(cuts.begin(), cuts.end(), [&](const auto& one, const auto& other) {
+    // The key comes last, so crossings that round to one place stand side by side.
     return std::tuple(one.first, along(one), key_of(one.second)) <
            std::tuple(other.first, along(other), key_of(other.second));
   });
@@ -201,6 +213,7 @@ LineSet LineDrape::divided_lines(bool of_boundary) const {
     put_end(edge.a);
     for (; next < cuts.size() && cuts[next].first == e; ++next) {
       const GridPoint p = cuts[next].second;
+      // What rounds to an end of the edge, or to the place before, would make an edge of no length.
       const bool is_end =
           p == fixed.vertices()[edge.a].position || p == fixed.vertices()[edge.b].position;
       const bool is_again = next > 0 && cuts[next - 1] == cuts[next];
@@ -233,17 +246,19 @@ double LineDrape::height_in(const Tin& tin, TriangleId t, const Side& side, doub
     if (p == place) {
       return heights.height_of_code(code[i]);
     }
-    // From the crossing, so that little is lost where differences are small.
+    // Corners are taken from the crossing, so that little is lost where differences are small.
     c[i] = {(p.x - side.from.x) - share * (static_cast<double>(side.to.x) - side.from.x),
             (p.y - side.from.y) - share * (static_cast<double>(side.to.y) - side.from.y)};
   }
   double sum = 0.0, area = 0.0;
   for (int i = 0; i < 3; ++i) {
     const MapPoint &p = c[next_corner(i)], &q = c[previous_corner(i)];
+    // On an edge rounding may put the crossing a little outside.
     const double weight = std::max(0.0, p.x * q.y - p.y * q.x);
     sum += code[i] * weight;
     area += weight;
   }
+  // The lines are read with the points: heights between steps would make the step of all finer.
   const double height = heights.height_of_code(sum / area);
   const double quantum = points_.frame().height_quantum;
   return std::round(height / quantum) * quantum;
@@ -266,6 +281,7 @@ void LineDrape::put_side(std::uint32_t number, std::size_t& next,
     }
   };
   double done = 0.0;
+  // A vertex without ground begins the side if no stretch does.
   if (next == stretches_.size() || stretches_[next].side != number ||
       stretches_[next].begin > one) {
     put(0.0, std::nullopt);
@@ -275,6 +291,7 @@ void LineDrape::put_side(std::uint32_t number, std::size_t& next,
     if (s.begin > done + one) {
       put((done + s.begin) / 2.0, std::nullopt);
     }
+    // Two triangles along one edge give the same stretch twice: the second adds nothing.
     if (s.begin > done + one || done == 0.0) {
       put(s.begin, s.height_at_begin, s.begins_at_line);
     }
@@ -297,6 +314,7 @@ SourcePoint LineDrape::source_point(const RingVertex& v) const {
 
 /// Where several vertices fall together the height of a fixed edge stands, or else that of the first.
 void LineDrape::note_heights(const std::vector<RingVertex>& chain) {
+  // try_emplace() keeps what came first.
   for (const bool on_line : {true, false}) {
     for (const RingVertex& v : chain) {
       if (v.height && v.on_line == on_line) {
@@ -339,6 +357,7 @@ void LineDrape::note_points() {
 void LineDrape::add_line(const std::vector<RingVertex>& line, LineSet& to) const {
   std::size_t begin = to.vertices.size();
   const auto end_piece = [&] {
+    // A single vertex on the ground is no line.
     if (to.vertices.size() - begin < 2) {
       to.vertices.resize(begin);
     } else {
@@ -371,6 +390,7 @@ LineDrape::Laid LineDrape::lay(std::optional<double> longest_edge, std::uint64_t
       progress(first, points_.size());
     }
   }
+  // Heights are compared too: the result does not depend on the order of parts and triangles.
   std::sort(stretches_.begin(), stretches_.end(), [](const Stretch& a, const Stretch& b) {
     return std::tie(a.side, a.begin, a.end, a.height_at_begin, a.height_at_end) <
            std::tie(b.side, b.begin, b.end, b.height_at_begin, b.height_at_end);
@@ -392,6 +412,7 @@ LineDrape::Laid LineDrape::lay(std::optional<double> longest_edge, std::uint64_t
       lines.push_back(std::move(chain));
     }
   }
+  // Lines are written last, when rings and all other lines have said how high shared places are.
   if (!lines.empty()) {
     note_points();
   }

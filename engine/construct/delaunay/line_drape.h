@@ -85,7 +85,7 @@ class LineDrape {
 
   const PointBuckets& points_;
   std::vector<Side> sides_;
-  std::vector<std::uint32_t> ends_;  ///< Of each ring, then of each line: one past its last side.
+  std::vector<std::uint32_t> ends_;  ///< One past the last side of each ring, then of each line.
   std::size_t rings_ = 0;
   PackedBoxes boxes_;
   std::vector<Stretch> stretches_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/delaunay/point_tile.h"
 
-#include <cmath>
 #include <utility>
 
 namespace ptin {
@@ -30,25 +29,6 @@ StartedTile PointTileStarter::start(const SampleRange& window) {
                                    ground_ ? &*ground_ : nullptr, part.fixed_sides);
   started.lone_samples = part.lone_points;
   return started;
-}
-
-namespace {
-
-TileTree tree_over(std::uint64_t points, std::optional<std::int64_t> side,
-                   std::shared_ptr<const ConvexHull> hull) {
-  const auto across = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(points))));
-  return TileTree::over_points(points, side.value_or(TileTree::default_side(across, across)),
-                               std::move(hull));
-}
-
-}  // namespace
-
-TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side) {
-  return tree_over(buckets.size(), side, std::make_shared<const ConvexHull>(buckets.hull()));
-}
-
-TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side) {
-  return tree_over(points, side, nullptr);
 }
 
 }  // namespace ptin

@@ -36,11 +36,4 @@ class PointTileStarter {
   std::stop_token stop_;
 };
 
-/// The tree over the points of buckets. @param side  As TileTree; none means
-/// TileTree::default_side() of a square of as many samples.
-[[nodiscard]] TileTree point_tree(const PointBuckets& buckets, std::optional<std::int64_t> side);
-/// The tree over so many points, before they are known. It has no hull, so it serves for estimates
-/// alone.
-[[nodiscard]] TileTree expected_point_tree(std::uint64_t points, std::optional<std::int64_t> side);
-
 }  // namespace ptin

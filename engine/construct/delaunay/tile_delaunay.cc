@@ -20,8 +20,8 @@ using delaunay_internal::position_of;
 using delaunay_internal::Triangulation;
 using delaunay_internal::Vertex_handle;
 
-/// Tells which triangles have an edge that is too long. The answer for an edge is the same in every
-/// tile.
+/// Finds the triangles that have an edge that is too long. The answer for an edge is the same in
+/// every tile.
 struct LongestEdge {
   double length;  ///< On the ground.
   const GroundMetric& ground;
@@ -39,7 +39,8 @@ struct LongestEdge {
   }
 };
 
-/// Tells which triangles are surface: those within the boundary, without an edge that is too long.
+/// Finds the triangles that are surface: those within the boundary, without an edge that is too
+/// long.
 struct SurfaceRule {
   std::optional<LongestEdge> longest;
   const FixedEdges& fixed;

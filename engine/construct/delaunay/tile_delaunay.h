@@ -22,8 +22,8 @@ struct DelaunayTile {
   /// ascending order of (first, second) corner. Beyond the border lies another tile or the
   /// outside.
   Tin tin;
-  /// Beside tin.triangles: bit i is set where side i is on a breakline or the boundary. Empty where
-  /// there are none.
+  /// Bit i of each of tin.triangles is set where its side i is on a breakline or the boundary.
+  /// Empty where there are none.
   std::vector<std::uint8_t> fixed_sides;
   std::uint64_t own_points = 0;
   std::uint64_t lone_points = 0;   ///< Own points in no surface triangle: they lose their height.

@@ -15,6 +15,7 @@
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "engine/handle.h"
 
 namespace ptin {
 namespace {
@@ -40,19 +41,6 @@ OGRSpatialReference parse(const std::string& text, const char* role) {
                                 "EPSG:32611, WKT or PROJJSON"));
   }
   return srs;
-}
-
-std::string to_wkt2(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  const OGRErr status = srs.exportToWkt(&text, options);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  if (status != OGRERR_NONE || wkt.empty()) {
-    throw Error(ErrorCode::invalid_argument,
-                "the CRS cannot be written as WKT2:2019; give another one instead");
-  }
-  return wkt;
 }
 
 std::string or_unknown(const char* name) {
@@ -128,14 +116,18 @@ void require_upwards(const OGRSpatialReference& srs) {
 Crs describe(OGRSpatialReference srs) {
   Crs crs;
   if (srs.IsCompound() && is_vertical_unnamed(srs)) {
-    // The vertical part tells a unit alone. A name that tells the unit's length is enough.
+    // The vertical part states a unit alone. A name that gives the unit's length is enough.
     const LengthUnit unit = vertical_unit_of(srs);
     if (metres_in(unit.name)) {
       crs.vertical_unit = unit.name;
       srs.StripVertical();
     }
   }
-  crs.wkt = to_wkt2(srs);
+  crs.wkt = wkt2_of(srs);
+  if (crs.wkt.empty()) {
+    throw Error(ErrorCode::invalid_argument,
+                "the CRS cannot be written as WKT2:2019; give another one instead");
+  }
   crs.geographic = srs.IsGeographic() != 0;
   const char* name = nullptr;
   if (crs.geographic) {
@@ -176,7 +168,7 @@ class OwnCrs {
       warn_of_unit(crs);
       return with_unit(std::move(crs));
     }
-    // A compound CRS tells what a vertical one is: any other part in plan does.
+    // A compound CRS shows what a vertical one is: any other part in plan does.
     const Crs with_any_plane = resolve_crs("EPSG:32631", "", declared_.vertical_crs);
     warn("crs_vertical_alone",
          "it names the vertical CRS " + quoted(declared_.vertical_crs) +
@@ -242,7 +234,7 @@ class OwnCrs {
   }
 
   DeclaredTexts declared_;
-  std::string plane_unit_ = "unknown";  ///< Of a CRS that was dropped.
+  std::string plane_unit_ = "unknown";  ///< The unit of a CRS that was dropped.
   const std::string& file_;
   SourceWarnings& warnings_;
 };
@@ -272,6 +264,14 @@ void warn_of_axes(const Crs& crs, const std::string& file, SourceWarnings& warni
 }
 
 }  // namespace
+
+std::string wkt2_of(const OGRSpatialReference& srs) {
+  char* text = nullptr;
+  static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
+  const bool is_written = srs.exportToWkt(&text, kOptions) == OGRERR_NONE && text != nullptr;
+  const Handle<char, &VSIFree> kept(text);
+  return is_written ? text : "";
+}
 
 Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,
                        const std::string& file, SourceWarnings& warnings) try {

@@ -12,7 +12,12 @@
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 
+class OGRSpatialReference;
+
 namespace ptin {
+
+/// A CRS as WKT2:2019 on one line; "" where it cannot be written so.
+[[nodiscard]] std::string wkt2_of(const OGRSpatialReference& srs);
 
 /// The texts by which a source declares its CRS; "" for none.
 struct DeclaredTexts {
@@ -45,10 +50,10 @@ struct Crs {
 
 /// The CRS of a source, as resolve_crs(); but what the source itself declares is warned of where GDAL
 /// does not understand it, and the terrain has no CRS then. A vertical CRS without a horizontal one
-/// tells the unit of the heights, and is warned of. So is a CRS whose axes point to the west or to the
-/// south, or that counts heights downwards: coordinates and heights are taken as they are.
-/// A local CRS without a name is one that nobody knows: its unit alone is kept, and it is warned of. So
-/// are a CRS whose unit is not known, and a shift of heights, which is not applied.
+/// states the unit of the heights, and is warned of. So is a CRS whose axes point to the west or to
+/// the south, or that counts heights downwards: coordinates and heights are taken as they are. A
+/// local CRS without a name is one that nobody knows: its unit alone is kept, and it is warned of.
+/// So are a CRS whose unit is not known, and a shift of heights, which is not applied.
 /// @param file          The path of the source, for warnings and errors.
 /// @throws Error invalid_argument  as resolve_crs(), of the options; `declared` is geocentric
 [[nodiscard]] Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,

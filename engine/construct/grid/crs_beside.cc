@@ -26,15 +26,10 @@ Beside read_beside(const std::string& path) {
   const std::string unpacked = is_packed ? path.substr(0, path.rfind('.')) : path;
   for (const char* extension : {"prj", "PRJ"}) {
     const std::string name = CPLResetExtension(unpacked.c_str(), extension);
-    VSILFILE* const file = VSIFOpenL(name.c_str(), "rb");
-    if (file == nullptr) {
-      continue;
-    }
     constexpr std::size_t kLongest = std::size_t{1} << 16;
-    std::string text(kLongest, '\0');
-    text.resize(VSIFReadL(text.data(), 1, text.size(), file));
-    VSIFCloseL(file);
-    return {name, CPLString(text).Trim()};
+    if (const auto text = beginning_of_file(name, kLongest)) {
+      return {name, CPLString(*text).Trim()};
+    }
   }
   return {};
 }
@@ -47,12 +42,8 @@ std::string crs_of_prj(const std::string& text) {
     return text;
   }
   srs.AutoIdentifyEPSG();
-  char* wkt = nullptr;
-  static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", nullptr};
-  const bool is_written = srs.exportToWkt(&wkt, kOptions) == OGRERR_NONE && wkt != nullptr;
-  std::string result = is_written ? wkt : text;
-  CPLFree(wkt);
-  return result;
+  const std::string wkt = wkt2_of(srs);
+  return wkt.empty() ? text : wkt;
 }
 
 /// The code of the CRS in the tables that is this one, whatever its names are; "" where there is none.
@@ -99,15 +90,15 @@ void take_crs_beside(const std::string& path, std::string& crs, SourceWarnings& 
   if (beside.text.empty()) {
     return;
   }
-  const std::string told = crs_of_prj(beside.text);
+  const std::string stated = crs_of_prj(beside.text);
   if (crs.empty()) {
-    crs = told;
+    crs = stated;
     return;
   }
-  if (is_crs(crs) && is_crs(told) && !is_same_place(crs, told)) {
+  if (is_crs(crs) && is_crs(stated) && !is_same_place(crs, stated)) {
     warnings.add({.kind = "crs_beside_differs",
                   .message = "the file says that its CRS is '" + name_of_crs(crs) + "', and " +
-                             beside.path + " beside it '" + name_of_crs(told) +
+                             beside.path + " beside it '" + name_of_crs(stated) +
                              "'; the file is believed; where it is wrong, name the CRS by --a-srs",
                   .file = path});
   }

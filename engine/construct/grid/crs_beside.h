@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The CRS that a .prj beside a file tells, as ESRI's programs and many others write it.
+// The CRS that a .prj beside a file states, as ESRI's programs and many others write it.
 #pragma once
 
 #include <string>

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string_view>
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
+
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -28,13 +29,9 @@ constexpr std::array<NamesOfFormat, 5> kNames = {{{"GML", "srsName=\"", "\""},
                                                   {"OGR_GMT", "@J", " \r\n"},
                                                   {"MapInfo File", "CoordSys ", "\r\n"}}};
 
-struct CloseText {
-  void operator()(VSILFILE* file) const noexcept { VSIFCloseL(file); }
-};
-
 /// The beginning and the end of a file, which may be the same; "" where it cannot be read.
 std::string ends_of(const char* path) {
-  const std::unique_ptr<VSILFILE, CloseText> file(VSIFOpenL(path, "rb"));
+  const Handle<VSILFILE, &VSIFCloseL> file(VSIFOpenL(path, "rb"));
   if (file == nullptr) {
     return "";
   }

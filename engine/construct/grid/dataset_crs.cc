@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/grid/dataset_crs.h"
 
-#include <cstdlib>
-
 #include <cpl_string.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
@@ -26,15 +24,6 @@ bool is_about_crs(const std::string& message) {
     }
   }
   return false;
-}
-
-std::string wkt_of_srs(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  srs.exportToWkt(&text, options);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  return wkt;
 }
 
 }  // namespace
@@ -66,7 +55,7 @@ std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,
     return "";
   }
   warn_of_shift(prj_of(data), path, warnings);
-  return wkt_of_srs(*srs);
+  return wkt2_of(*srs);
 }
 
 std::string with_third_axis(const std::string& plane) {
@@ -74,7 +63,7 @@ std::string with_third_axis(const std::string& plane) {
   OGRSpatialReference srs;
   const bool is_made =
       srs.importFromWkt(plane.c_str()) == OGRERR_NONE && srs.PromoteTo3D(nullptr) == OGRERR_NONE;
-  return is_made ? wkt_of_srs(srs) : plane;
+  return is_made ? wkt2_of(srs) : plane;
 }
 
 std::string height_unit_of_prj(GDALDataset& data) {
@@ -92,9 +81,10 @@ std::string height_unit_of_prj(GDALDataset& data) {
 void warn_of_shift(const std::string& text, const std::string& path, SourceWarnings& warnings) {
   const std::size_t name = CPLString(text).ifind("\"Vertical_Shift\"");
   const std::size_t comma = name == std::string::npos ? name : text.find(',', name);
-  const double shift = comma == std::string::npos ? 0.0 : std::strtod(&text[comma + 1], nullptr);
-  if (shift != 0.0) {
-    const std::string number = text.substr(comma + 1, text.find(']', comma) - comma - 1);
+  const std::size_t begin = text.find_first_not_of(", ", comma);
+  const std::string number =
+      begin == std::string::npos ? "" : text.substr(begin, text.find(']', begin) - begin);
+  if (parse_number<double>(number).value_or(0.0) != 0.0) {
     warnings.add({"crs_vertical_shift",
                   "its vertical CRS shifts heights by " + number +
                       " (Vertical_Shift), which is not applied: heights are taken as they are, in "

@@ -16,10 +16,10 @@ namespace ptin {
 
 class GdalSession;
 
-/// Has GDAL tell the vertical parts of CRSs that some of its drivers leave out unless they are asked:
-/// those of GeoTIFF 1.0, of DTED, SRTM and their like, and of GML. The options are this thread's
-/// alone, and as before when the scope ends. To be there while a file is opened and while its CRS is
-/// first asked for, which any question may do.
+/// Has GDAL give the vertical parts of CRSs that some of its drivers leave out unless they are
+/// asked: those of GeoTIFF 1.0, of DTED, SRTM and their like, and of GML. The options are this
+/// thread's alone, and as before when the scope ends. To be there while a file is opened and while
+/// its CRS is first asked for, which any question may do.
 class ReportedVerticalParts {
  public:
   ReportedVerticalParts()
@@ -34,7 +34,7 @@ class ReportedVerticalParts {
 /// The CRS as WKT2; "" where there is none, or one of those by which a GeoPackage says that nothing is
 /// known ("Undefined Cartesian SRS"). Where GDAL understands none, but the dataset or a file beside it
 /// names one: that text, which resolve_source_crs() warns of.
-/// @param srs       Of the dataset, or of the layer that is read; null where GDAL knows none.
+/// @param srs       That of the dataset or of the layer that is read; null where GDAL knows none.
 /// @param opening   That in which the dataset was opened.
 /// @param warnings  Receives what the text of a CRS says and GDAL passes over.
 [[nodiscard]] std::string declared_crs(GDALDataset& data, const OGRSpatialReference* srs,

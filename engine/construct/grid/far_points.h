@@ -35,7 +35,8 @@ struct EndValues {
   void insert(const Value& v) noexcept;
 };
 
-/// Sees points, in any order and in parts, and tells which lie far from all others. A plain value.
+/// Sees points, in any order and in parts, and finds those that lie far from all others. A plain
+/// value.
 class FarPoints {
  public:
   void add(double x, double y, double z) noexcept {

@@ -8,10 +8,11 @@
 
 namespace ptin {
 
-/// Appends `frame` to a file of arrays.  @throws Error io_error, resource_exhausted
-void put_frame(ArrayFileWriter& file, const TerrainFrame& frame);
-/// Reads the frame that put_frame() wrote at this place of the file.
-/// @throws Error corruption  the next arrays are no frame, or are damaged
-[[nodiscard]] TerrainFrame take_frame(ArrayFileReader& file);
+template <class File, MaybeConst<TerrainFrame> Frame>
+void serialize(File& file, Frame& f) {
+  file.values(f.map, f.heights.type, f.heights.step, f.heights.offset, f.height_rounding,
+              f.height_quantum, f.min_height, f.max_height, f.vertical_crs_known, f.geographic,
+              f.crs_wkt, f.horizontal_unit, f.vertical_unit);
+}
 
 }  // namespace ptin

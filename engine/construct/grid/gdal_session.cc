@@ -8,9 +8,11 @@
 
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <gdal.h>
 
 #include "engine/crs/proj_messages.h"
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -68,6 +70,16 @@ std::string as_part_of_sentence(std::string text) {
 }
 
 }  // namespace
+
+std::optional<std::string> beginning_of_file(const std::string& path, std::size_t most) {
+  const Handle<VSILFILE, &VSIFCloseL> file(VSIFOpenL(path.c_str(), "rb"));
+  if (file == nullptr) {
+    return std::nullopt;
+  }
+  std::string text(most, '\0');
+  text.resize(VSIFReadL(text.data(), 1, text.size(), file.get()));
+  return text;
+}
 
 GdalSession::GdalSession() {
   CPLPushErrorHandlerEx(&collect, this);

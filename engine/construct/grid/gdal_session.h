@@ -4,12 +4,18 @@
 // are kept for our own errors and warnings instead of going to the standard error stream.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/construct/grid/source_warning.h"
 
 namespace ptin {
+
+/// The first `most` bytes of a file, or all of fewer; none where it cannot be opened.
+[[nodiscard]] std::optional<std::string> beginning_of_file(const std::string& path,
+                                                           std::size_t most);
 
 /// A scope in which GDAL prints nothing. While a session lives, it keeps the first failure that
 /// GDAL raises on this thread, and its first warnings; what is said more, and debug messages, are

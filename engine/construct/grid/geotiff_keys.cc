@@ -15,6 +15,7 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/vertical_part.h"
@@ -82,7 +83,7 @@ std::uint16_t code_of(const std::vector<Entry>& entries, Key key) {
   return found == entries.end() ? kUndefined : (*found)[3];
 }
 
-/// A TIFF of one pixel that holds keys: GDAL opens it, and so tells what they mean.
+/// A TIFF of one pixel that holds keys: GDAL opens it, and so says what they mean.
 class KeyTiff {
  public:
   KeyTiff(const Bytes& directory, const GeoTiffKeys& keys) {
@@ -199,15 +200,6 @@ class KeyReader {
   const GeoTiffKeys& keys_;
 };
 
-std::string wkt_of(const OGRSpatialReference& srs) {
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
-  const bool is_written = !srs.IsEmpty() && srs.exportToWkt(&text, options) == OGRERR_NONE;
-  std::string wkt = is_written && text != nullptr ? text : "";
-  CPLFree(text);
-  return wkt;
-}
-
 void warn(DeclaredCrs& declared, const char* kind, std::string message) {
   declared.warnings.push_back({kind, std::move(message), ""});
 }
@@ -266,7 +258,7 @@ void add_ellipsoidal(OGRSpatialReference plane, const std::optional<LengthUnit>&
   const bool is_metre = !unit || unit->name == "metre";
   if (is_metre && !plane.IsEmpty() && plane.IsLocal() == 0 &&
       plane.PromoteTo3D(nullptr) == OGRERR_NONE) {
-    declared.crs = wkt_of(plane);
+    declared.crs = wkt2_of(plane);
     return;
   }
   declared.units.heights = unit ? unit->name : "metre";
@@ -310,7 +302,7 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
     }
     declared.units.heights = unit ? unit->name : "";
     if (unit && !metres_in(unit->name)) {
-      declared.vertical_crs = vertical_text(both, *unit);  // which alone tells how long it is
+      declared.vertical_crs = vertical_text(both, *unit);  // which alone states its length
     }
     return;
   }
@@ -354,7 +346,7 @@ DeclaredCrs crs_of_keys(const GeoTiffKeys& keys) {
   if (code != kUndefined && plane.IsLocal() != 0) {
     plane.Clear();  // what GDAL makes of a code that it does not know
   }
-  declared.crs = wkt_of(plane);
+  declared.crs = wkt2_of(plane);
   if (has_plane && declared.crs.empty()) {
     warn(declared, "crs_not_understood",
          (code == kUndefined ? std::string("its GeoTIFF keys are not ones that GDAL understands")

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -13,30 +14,13 @@ namespace ptin {
 
 /// Finds the height encoding of points in one pass over their heights. Where heights are codes
 /// already (PointGrid::whole), the encoding is int32 with the step of the codes, and only their
-/// range is to be found; else HeightScan chooses it. Threads: one. Cost: constant a height.
+/// range is to be found; else HeightScan chooses it. A plain value. Threads: one. Cost: constant a height.
 class HeightFinder {
  public:
   /// @param whole  True where add() receives codes: heights in whole steps of `step`. False where
   ///               it receives heights in their own unit.
   /// @param step   The height of one code, in the height's unit; unused unless `whole`.
-  HeightFinder(bool whole, double step) : whole_(whole), step_(step) {}
-
-  /// As HeightScan::Known.
-  struct Known {
-    std::uint64_t whole;
-    double step, low, high;
-    HeightScan::Known scan;
-  };
-  [[nodiscard]] Known known() const noexcept {
-    return {whole_ ? 1U : 0U, step_, low_, high_, scan_.known()};
-  }
-  /// The finder that knew this.
-  explicit HeightFinder(const Known& known) noexcept
-      : whole_(known.whole != 0),
-        step_(known.step),
-        scan_(HeightScan::Given::kFloat64, known.scan),
-        low_(known.low),
-        high_(known.high) {}
+  constexpr HeightFinder(bool whole, double step) noexcept : whole_(whole), step_(step) {}
 
   void add(double height) {
     if (whole_) {
@@ -66,6 +50,7 @@ class HeightFinder {
 
  private:
   bool whole_;
+  std::array<bool, 7> unused_{};  ///< In the place of padding.
   double step_;
   HeightScan scan_{HeightScan::Given::kFloat64};
   double low_ = std::numeric_limits<double>::infinity();

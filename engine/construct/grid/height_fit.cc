@@ -73,27 +73,6 @@ void HeightScan::test_decimals(double height) {
   decimals_ = fits ? decimals_ : kMaxDecimals + 1;
 }
 
-HeightScan::Known HeightScan::known() const noexcept {
-  static_assert(sizeof(Known::decimal_rounding) == sizeof decimal_rounding_);
-  return {count_,
-          all_int32_ ? 1U : 0U,
-          all_float32_ ? 1U : 0U,
-          static_cast<std::uint64_t>(decimals_),
-          min_,
-          max_,
-          decimal_rounding_};
-}
-
-HeightScan::HeightScan(Given given, const Known& known) noexcept
-    : given_(given),
-      count_(known.count),
-      min_(known.min),
-      max_(known.max),
-      all_int32_(known.all_int32 != 0),
-      all_float32_(known.all_float32 != 0),
-      decimals_(static_cast<int>(known.decimals)),
-      decimal_rounding_(known.decimal_rounding) {}
-
 void HeightScan::join(const HeightScan& other) {
   count_ += other.count_;
   min_ = std::min(min_, other.min_);

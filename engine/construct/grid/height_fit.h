@@ -31,24 +31,15 @@ struct HeightFit {
 ///      for the rounding of decimals to binary;
 ///   5. int32 with a power of two as its step. This moves a height by at most half a step: 2^-31 of
 ///      the range, or an ulp of the largest height where that is more.
+/// A plain value.
 class HeightScan {
  public:
   /// The type in which the source holds its heights.
   enum class Given : std::uint8_t { kFloat32, kFloat64 };
-  explicit HeightScan(Given given) : given_(given) {}
+  constexpr explicit HeightScan(Given given) noexcept : given_(given) {}
 
   /// Adds a height. REQUIRES: finite, not beyond the range of a float32. Cost: 10 to 25 ns.
   void add(double height);
-
-  /// All that a scan knows, without a byte that means nothing: to be kept in a file.
-  struct Known {
-    std::uint64_t count, all_int32, all_float32, decimals;
-    double min, max;
-    std::array<double, 5> decimal_rounding;
-  };
-  [[nodiscard]] Known known() const noexcept;
-  /// The scan that knew this.
-  HeightScan(Given given, const Known& known) noexcept;
 
   /// Adds the heights that another scan has seen. REQUIRES: both were given the same type.
   void join(const HeightScan& other);
@@ -57,18 +48,20 @@ class HeightScan {
   [[nodiscard]] HeightFit fit() const;
 
  private:
-  static constexpr int kMaxDecimals = 4;  ///< Of the finest decimal step that is tested.
+  static constexpr int kMaxDecimals = 4;  ///< Decimals of the finest step that is tested.
   void test_decimals(double height);
   void choose_rounded(HeightFit& fit) const;
   [[nodiscard]] double float_quantum() const;
 
-  Given given_;
   std::uint64_t count_ = 0;
   double min_ = std::numeric_limits<double>::infinity();
   double max_ = -std::numeric_limits<double>::infinity();
+  Given given_;
   bool all_int32_ = true;
   bool all_float32_ = true;
-  int decimals_ = 0;  ///< Fewest that hold all heights seen; kMaxDecimals + 1: none tested does.
+  bool unused_ = false;  ///< In the place of padding.
+  std::int32_t decimals_ =
+      0;  ///< Fewest that hold all heights seen; kMaxDecimals + 1: none tested does.
   /// Entry d, for d >= decimals_: the largest distance of a height from a multiple of 10^-d.
   std::array<double, kMaxDecimals + 1> decimal_rounding_{};
 };

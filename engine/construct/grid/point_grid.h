@@ -81,8 +81,8 @@ class DecimalRange {
   std::array<Extreme, 19> extremes_;  ///< By decimals: only such mantissas can be compared.
   /// By decimals to round to: the most that stay of those that have more.
   std::array<std::uint32_t, 19> rounded_{};
-  /// Bit `d`: d decimals are more than rounding to d left so far. Of most sources the first few values
-  /// settle it, so that adding others costs no rounding.
+  /// Bit `d`: d decimals are more than rounding to d left so far. The first few values of most
+  /// sources settle it, so that adding others costs no rounding.
   std::uint32_t unsettled_ = 0x7fffe;
 };
 
@@ -200,7 +200,7 @@ class PointGridScan {
   int plan_decimals_ = 0, height_decimals_ = 0;
   PointExtent extent_;
   DecimalRange line_x_, line_y_, line_z_;
-  int most_line_decimals_ = 0;  ///< Of plan coordinates.
+  int most_line_decimals_ = 0;  ///< So many decimals of a line's x and y count.
 };
 
 /// Why a point is not to be built from: its height is `options.nodata`, or it lies outside of

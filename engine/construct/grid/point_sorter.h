@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Points to be sorted along a curve.
+// Points to be sorted along a curve, by ExternalSorter.
 #pragma once
 
 #include <cstdint>
-
-#include "engine/construct/scratch/external_sorter.h"
 
 namespace ptin {
 
@@ -14,10 +12,7 @@ struct KeyedHeight {
   std::uint64_t key = 0;  ///< PointOrder::key() of its position.
   double height = 0.0;    ///< As PointGrid::height() has it; no NaN.
   friend bool operator==(const KeyedHeight&, const KeyedHeight&) = default;
-};
-
-struct ByKeyThenHeight {
-  bool operator()(const KeyedHeight& a, const KeyedHeight& b) const noexcept {
+  friend bool operator<(const KeyedHeight& a, const KeyedHeight& b) noexcept {
     return a.key != b.key ? a.key < b.key : a.height < b.height;
   }
 };
@@ -27,15 +22,9 @@ struct NumberedHeight {
   std::uint64_t key = 0;
   double height = 0.0;
   std::uint64_t number = 0;  ///< How many points of the source come before it.
-};
-
-struct ByKeyThenNumber {
-  bool operator()(const NumberedHeight& a, const NumberedHeight& b) const noexcept {
+  friend bool operator<(const NumberedHeight& a, const NumberedHeight& b) noexcept {
     return a.key != b.key ? a.key < b.key : a.number < b.number;
   }
 };
-
-using PointSorter = ExternalSorter<KeyedHeight, ByKeyThenHeight>;
-using NumberedPointSorter = ExternalSorter<NumberedHeight, ByKeyThenNumber>;
 
 }  // namespace ptin

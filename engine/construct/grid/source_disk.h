@@ -15,10 +15,10 @@ inline constexpr double kRasterOutputOfVertex = 54.0, kPointOutputOfVertex = 104
 /// Bytes of temporary files for a source; only `tiles_of_vertex` speaks of the files of tiles.
 struct SourceDisk {
   std::uint64_t while_reading = 0;  ///< At most, while it is read and sorted, before tiles begin.
-  std::uint64_t spooled = 0;        ///< Of those, the bytes when the last point has been read.
+  std::uint64_t spooled = 0;        ///< What of that is there when the last point has been read.
   std::uint64_t kept = 0;           ///< While tiles are built, until the build ends.
   double tiles_of_vertex = 62.0;    ///< A vertex, for files of tiles: measured, with some room.
-  double output_of_vertex = kRasterOutputOfVertex;  ///< Of the output, at most.
+  double output_of_vertex = kRasterOutputOfVertex;  ///< Bytes of the output a vertex, at most.
   bool is_there = false;     ///< The source has been read: `kept` is on the disk already.
   bool is_estimate = false;  ///< The number of points is estimated.
   /// True when much less may be needed: points may be left out, or an interrupted build may have

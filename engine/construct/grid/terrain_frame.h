@@ -27,7 +27,7 @@ struct TerrainFrame {
   /// for float32 the decimal step that holds all heights. Where no decimal step does, and int32
   /// heights are rounded therefore, it is range / 2^16, or the encoding's step if that is larger.
   double height_quantum = 0.0;
-  /// Of all samples with a height, decoded; min > max when there is no such sample.
+  /// Range of all decoded heights of samples; min > max when no sample has one.
   double min_height = 0.0, max_height = 0.0;
 };
 

@@ -21,10 +21,6 @@ std::string short_name(const std::string& unit) {
   return unit == "US survey foot" ? "ftUS" : (unit == "foot" ? "ft" : unit);
 }
 
-struct DeleteNode {
-  void operator()(OGR_SRSNode* node) const noexcept { delete node; }
-};
-
 std::string wkt_of(const OGR_SRSNode& node) {
   char* text = nullptr;
   node.exportToWkt(&text);
@@ -60,7 +56,7 @@ std::string vertical_text(const OGRSpatialReference& srs, const LengthUnit& unit
     const std::string code = or_empty(srs.GetAuthorityCode("VERT_CS"));
     return authority.empty() || code.empty() ? wkt_of(*part) : authority + ":" + code;
   }
-  const std::unique_ptr<OGR_SRSNode, DeleteNode> other(part->Clone());
+  const std::unique_ptr<OGR_SRSNode> other(part->Clone());
   other->StripNodes("AUTHORITY");
   OGR_SRSNode* const name = other->GetChild(0);
   name->SetValue((or_empty(name->GetValue()) + " (" + short_name(unit.name) + ")").c_str());

@@ -18,8 +18,8 @@ struct LengthUnit {
 /// The unit of heights of a compound CRS. REQUIRES: `srs` is compound.
 [[nodiscard]] LengthUnit vertical_unit_of(const OGRSpatialReference& srs);
 
-/// True where neither the vertical part of a compound CRS nor its datum has a name: it tells a unit
-/// and nothing else. REQUIRES: `srs` is compound.
+/// True where neither the vertical part of a compound CRS nor its datum has a name: it states a
+/// unit and nothing else. REQUIRES: `srs` is compound.
 [[nodiscard]] bool is_vertical_unnamed(const OGRSpatialReference& srs);
 
 /// True for what stands in the place of a name that nobody gave.

@@ -2,37 +2,30 @@
 #include "engine/construct/grid/warnings_file.h"
 
 #include <cstdint>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace ptin {
 
-void put_warnings(ArrayFileWriter& file, const SourceWarnings& warnings) {
-  file.put(std::vector<std::uint64_t>{warnings.all().size()});
-  for (const SourceWarning& w : warnings.all()) {
-    for (const std::string* text : {&w.kind, &w.message, &w.file, &w.subject, &w.last_file}) {
-      file.put_text(*text);
-    }
-    file.put(std::vector<std::uint64_t>{w.line, w.count, w.files});
+template <class File, MaybeConst<SourceWarning> Warning>
+void serialize(File& file, Warning& w) {
+  file.values(w.kind, w.message, w.file, w.subject, w.last_file, w.line, w.count, w.files);
+}
+
+void serialize(ArrayFileWriter& file, const SourceWarnings& warnings) {
+  file.values(std::uint64_t{warnings.all().size()});
+  for (const SourceWarning& warning : warnings.all()) {
+    file.values(warning);
   }
 }
 
-SourceWarnings take_warnings(ArrayFileReader& file) {
-  SourceWarnings warnings;
-  const std::vector<std::uint64_t> size = file.take_copy<std::uint64_t>();
-  for (std::uint64_t i = 0; i < size.at(0); ++i) {
-    SourceWarning w;
-    for (std::string* text : {&w.kind, &w.message, &w.file, &w.subject, &w.last_file}) {
-      *text = file.take_text();
-    }
-    const std::vector<std::uint64_t> numbers = file.take_copy<std::uint64_t>();
-    w.line = numbers.at(0);
-    w.count = numbers.at(1);
-    w.files = numbers.at(2);
-    warnings.add(std::move(w));
+void serialize(ArrayFileReader& file, SourceWarnings& warnings) {
+  std::uint64_t size = 0;
+  file.values(size);
+  for (; size > 0; --size) {
+    SourceWarning warning;
+    file.values(warning);
+    warnings.add(std::move(warning));
   }
-  return warnings;
 }
 
 }  // namespace ptin

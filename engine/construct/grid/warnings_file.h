@@ -8,10 +8,8 @@
 
 namespace ptin {
 
-/// Appends them to a file of arrays.  @throws Error io_error, resource_exhausted
-void put_warnings(ArrayFileWriter& file, const SourceWarnings& warnings);
-/// Reads what put_warnings() wrote at this place of the file.
-/// @throws Error corruption  the next arrays are no warnings, or are damaged
-[[nodiscard]] SourceWarnings take_warnings(ArrayFileReader& file);
+/// @throws Error as ArrayFileWriter::values(), ArrayFileReader::values()
+void serialize(ArrayFileWriter& file, const SourceWarnings& warnings);
+void serialize(ArrayFileReader& file, SourceWarnings& warnings);
 
 }  // namespace ptin

@@ -24,7 +24,7 @@ struct RecordBounds {
 
 /// What a leaf shows of one record of a segment: its error and deviation are at least `bounds`. The
 /// record is known by its vertex, since its place among the records follows from all collapses before
-/// it: a change elsewhere would move it, and change files that tell the same.
+/// it: a change elsewhere would move it, and change files that say the same.
 struct BoundsRaise {
   GridPoint vertex;  ///< VertexSplit::u of the record.
   RecordBounds bounds;
@@ -43,10 +43,11 @@ struct InnerSegment {
   /// SegmentBounds::set_foreign().
   std::vector<RecordBounds> foreign;
   std::vector<std::uint32_t> child_begin;  ///< Where each child's begin in `foreign`.
-  /// In the order of the collapses. Until tightening `error` is the own part over witnesses, and
-  /// `deviation` is 0.
+  /// In the order of the collapses. Until tightening `error` is the own part over carried samples,
+  /// and `deviation` is 0.
   std::vector<VertexSplit> records;
-  /// Of the own records. Their triangles name successors by number: own records saturate over these.
+  /// Stars of the own records. Triangles name successors by number: own records saturate over
+  /// these.
   RecordStars stars;
   std::vector<std::uint32_t> exported;  ///< Numbers of the records that this tile pushed up.
 };

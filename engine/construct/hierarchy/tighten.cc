@@ -27,7 +27,7 @@ namespace ptin {
 namespace {
 
 /// The reach that a vertex has in a replay. Construction has charged the vertex itself, so it is
-/// not charged again: the reach is (nearly) 0, and its sign tells the class alone.
+/// not charged again: the reach is (nearly) 0, and its sign gives the class alone.
 float no_reach(bool has_height) { return has_height ? 0.0F : -FLT_MIN; }
 
 /// True where the samples of a leaf can be measured as blocks: over a raster with whole codes, without
@@ -70,7 +70,7 @@ class Replay {
   std::unique_ptr<FullSurface> full_;
   GridBox box_;
   std::vector<TriangleId> near_;  ///< Triangles of T0 that the leaf may touch.
-  PackedBoxes near_boxes_;        ///< Of the triangles in near_.
+  PackedBoxes near_boxes_;        ///< Boxes of the triangles in near_.
   std::unordered_map<VertexKey, VertexId> vertices_;
   std::optional<PlaneBlocks> blocks_;  ///< In the place of lists of samples, where that suits.
   StarSamples star_;
@@ -141,7 +141,7 @@ void Replay::take_samples(const Tile& leaf) {
       samples.push_back({vertex.position, vertex.height, leaf.vertex_state[v].reach});
     }
   }
-  for (const CarriedState& carried : leaf.carried) {  // witnesses of its triangles
+  for (const CarriedState& carried : leaf.carried) {  // and witnesses at corners
     const auto own = leaf.samples.samples(carried.samples);
     samples.insert(samples.end(), own.begin(), own.end());
   }
@@ -208,10 +208,9 @@ VertexId Replay::vertex_at(GridPoint p) const {
 
 VertexId Replay::add_vertex(const VertexSplit& record) {
   const auto u = static_cast<VertexId>(tile_.tin.vertices.size());
-  const bool has_height = (record.flags & VertexSplit::kVertexVoid) == 0;
   tile_.tin.vertices.push_back({record.u, record.height, kNone});
-  tile_.tin.has_height.push_back(has_height ? 1 : 0);
-  tile_.vertex_state.push_back({no_reach(has_height), 0, false});
+  tile_.tin.has_height.push_back(record.has_height() ? 1 : 0);
+  tile_.vertex_state.push_back({no_reach(record.has_height()), 0, false});
   vertices_.emplace(key_of(record.u), u);
   return u;
 }
@@ -259,8 +258,9 @@ RecordBounds Replay::measure_samples(double gap) {
           height_bound(std::max(own.deviation, gap), tile_.units.heights)};
 }
 
-/// What the record says already, its error over witnesses, is not looked for again. Some sample has
-/// that error, in this leaf or in another one, so the deviation of the record is that at least.
+/// What the record says already, its error over carried samples, is not looked for again. Some
+/// sample has that error, in this leaf or in another one, so the deviation of the record is that at
+/// least.
 RecordBounds Replay::measure_blocks(const VertexSplit& record, double gap) {
   const HeightEncoding& heights = tile_.units.heights;
   const PlaneBlocks::Centre u{record.u, heights.code(record.height), star_.star.closed};

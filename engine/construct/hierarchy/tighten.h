@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Tightening: true errors and deviations for records that were ordered by witnesses
+// Tightening: true errors and deviations for records that were ordered by carried samples
 // (engine/DESIGN.md, section 5.7).
 #pragma once
 
@@ -23,7 +23,7 @@ struct ReplaySegment {
 /// is measured over the leaf's samples and its part of the full surface. A record whose own error
 /// or deviation there is more than it says gets an entry in `raises`.
 ///
-/// Only records whose region of influence meets the leaf are applied. They are closed under
+/// Only records whose roi meets the leaf are applied. They are closed under
 /// dependency, and every fan that touches the leaf is among theirs. A sample begins in a triangle
 /// of T0 and goes, split by split, to a triangle that replaces its own. So whichever records a
 /// refinement applies, the sample is in a triangle over which it was measured. A sample that is a

@@ -36,20 +36,20 @@ struct CollapsedLeaf {
   StarredRecords records;  ///< Final. Those of a first pass have empty rings.
   Tile pushed;             ///< With all samples.
   std::unique_ptr<FullSurface> full;
-  GridBox box;                     ///< Of all samples and the full surface.
+  GridBox box;                     ///< Holds all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< As StartedTile.
 };
 
 /// A tile of level 1 after its collapses.
 struct CollapsedGroup {
   StarredRecords records;  ///< Final.
-  Tile pushed;             ///< With witnesses.
+  Tile pushed;             ///< With carried samples.
 };
 
 /// A tile of level 2 or more after its collapses.
 struct CollapsedInner {
   InnerSegment segment;  ///< To be tightened.
-  Tile pushed;           ///< With witnesses.
+  Tile pushed;           ///< With carried samples.
 };
 
 /// Starts a leaf and collapses it until a quarter of its unlocked vertices is left; where it is the
@@ -69,7 +69,7 @@ struct CollapsedInner {
                                             const CollapseOptions& options,
                                             const std::stop_token& stop);
 
-/// The same for a tile of level 2 or more, which measures witnesses alone.
+/// The same for a tile of level 2 or more, which measures carried samples alone.
 /// @param parts  What its children pushed, in the order of TileTree::children(). Used up; their
 ///     records are foreign to the segment.
 /// @throws Error as simplify()

@@ -9,16 +9,11 @@ namespace ptin {
 
 namespace {
 
-/// CarriedState without what the record tells (box and chain) and what the reader makes (the slot).
+/// CarriedState without what the record has (box and chain) and what the reader makes (the slot).
 struct StoredCarried {
   std::uint32_t record;
   std::uint32_t samples;
   std::uint32_t holds;  ///< Bit 0: heights, bit 1: voids.
-};
-
-struct StoredFlags {
-  std::uint8_t samples_fill_grid;
-  std::uint8_t has_voids;
 };
 
 }  // namespace
@@ -36,32 +31,18 @@ void write_pushed(ArrayFileWriter& out, const Tile& tile) {
                        (c.holds_heights ? 1U : 0U) | (c.holds_voids ? 2U : 0U)});
     samples.insert(samples.end(), own.begin(), own.end());
   }
-  const StoredFlags flags{static_cast<std::uint8_t>(tile.samples_fill_grid ? 1 : 0),
-                          static_cast<std::uint8_t>(tile.has_voids ? 1 : 0)};
-  out.put(std::span<const StoredFlags>(&flags, 1));
-  out.put(tile.tin.vertices);
-  out.put(tile.tin.has_height);
-  out.put(reaches);
-  out.put(tile.tin.triangles);
-  out.put(tile.tin.classes);
-  out.put(carried);
-  out.put(samples);
-  out.put(tile.records);
+  out.values(tile.samples_fill_grid, tile.has_voids, tile.tin.vertices, tile.tin.has_height,
+             reaches, tile.tin.triangles, tile.tin.classes, carried, samples, tile.records);
 }
 
 Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
   Tile tile;
   tile.units = units;
-  const StoredFlags flags = in.take<StoredFlags>()[0];
-  tile.samples_fill_grid = flags.samples_fill_grid != 0;
-  tile.has_voids = flags.has_voids != 0;
-  tile.tin.vertices = in.take_copy<Vertex>();
-  tile.tin.has_height = in.take_copy<std::uint8_t>();
+  in.values(tile.samples_fill_grid, tile.has_voids, tile.tin.vertices, tile.tin.has_height);
   for (const float reach : in.take<float>()) {
     tile.vertex_state.push_back({reach, 0, false});
   }
-  tile.tin.triangles = in.take_copy<Triangle>();
-  tile.tin.classes = in.take_copy<TriangleClass>();
+  in.values(tile.tin.triangles, tile.tin.classes);
   const auto carried = in.take<StoredCarried>();
   const auto samples = in.take<Sample>();
   tile.records = in.take_copy<VertexSplit>();
@@ -84,13 +65,8 @@ Tile read_pushed(ArrayFileReader& in, const MeasureUnits& units) {
 }
 
 void write_segment(ArrayFileWriter& out, const InnerSegment& segment) {
-  out.put(segment.foreign);
-  out.put(segment.child_begin);
-  out.put(segment.records);
-  out.put(segment.stars.corners);
-  out.put(segment.stars.successors);
-  out.put(segment.stars.ring_end);
-  out.put(segment.exported);
+  out.values(segment.foreign, segment.child_begin, segment.records, segment.stars.corners,
+             segment.stars.successors, segment.stars.ring_end, segment.exported);
 }
 
 SegmentFile::SegmentFile(const TileId& id, const std::string& path, const ArrayFileFacts& facts)

@@ -6,11 +6,11 @@
 // push_up() cuts a tile down to what its parent needs:
 // 1. Alive vertices and triangles get new numbers in their old order, so that nothing that is
 //    decided by order changes.
-// 2. Of the records only those stay that a triangle carries: the parent's records will depend on no
-//    other. `exported` remembers which they are, for tightening. All of them, and the stars, are
+// 2. Only records stay that a triangle carries: the parent's records will depend on no others.
+//    `exported` remembers which they are, for tightening. All of them, and the stars, are
 //    handed back beside the pushed tile.
 // 3. Triangles are copied by these numbers, with all their samples (from a leaf) or with a few
-//    witnesses (from any other tile). The old tile is freed.
+//    carried samples (from any other tile). The old tile is freed.
 // Between the steps the pushed tile lies in memory (leaves) or in a file
 // (construct/hierarchy/tile_files.h).
 //
@@ -19,7 +19,7 @@
 //    one key, on a common seam, become one.
 // 2. Triangles, records and samples are appended part by part, with shifted numbers. A part is
 //    freed before the next one is copied, so that the whole is never there twice.
-// 3. link_seams() makes neighbours of triangles that share a seam edge.
+// 3. link_sides() makes neighbours of triangles that share a seam edge.
 // 4. settle_vertices() counts degrees, and finds each vertex the triangle where the walk around it
 //    begins: both change on seams.
 // 5. lock_seams() locks what is on a seam of the parent. Common seams are free to collapse.
@@ -27,12 +27,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 #include <utility>
 
 #include "engine/check.h"
 #include "engine/construct/collapse/witness.h"
 #include "engine/mesh/compact.h"
+#include "engine/mesh/link.h"
 
 namespace ptin {
 
@@ -98,21 +98,17 @@ void keep_witnesses(const Tile& from, TriangleId t, std::vector<Sample>& scratch
   }
 }
 
-/// The new number of each vertex of each part.
-struct JoinedVertices {
-  std::vector<Renumbering> place;  ///< For each part, beside its vertices.
-};
-
-JoinedVertices join_vertices(const std::vector<Tile>& parts, Tile& to) {
+/// Joins the vertices of parts. Returns for each part, beside its vertices, their new numbers.
+std::vector<Renumbering> join_vertices(const std::vector<Tile>& parts, Tile& to) {
   struct Entry {
     VertexKey key;
     std::uint32_t part;
     VertexId vertex;
   };
   std::vector<Entry> entries;
-  JoinedVertices joined;
+  std::vector<Renumbering> place;
   for (std::uint32_t p = 0; p < parts.size(); ++p) {
-    joined.place.emplace_back(parts[p].tin.vertices.size(), kNone);
+    place.emplace_back(parts[p].tin.vertices.size(), kNone);
     for (VertexId v = 0; v < parts[p].tin.vertices.size(); ++v) {
       entries.push_back({key_of(parts[p].tin.position(v)), p, v});
     }
@@ -132,34 +128,9 @@ JoinedVertices join_vertices(const std::vector<Tile>& parts, Tile& to) {
       const float other = parts[e.part].vertex_state[e.vertex].reach;
       reach = std::abs(other) > std::abs(reach) ? other : reach;
     }
-    joined.place[e.part][e.vertex] = static_cast<std::uint32_t>(to.tin.vertices.size() - 1);
+    place[e.part][e.vertex] = static_cast<std::uint32_t>(to.tin.vertices.size() - 1);
   }
-  return joined;
-}
-
-/// Links triangles across seams: two border edges between the same two vertices are one edge.
-void link_seams(Tin& tin) {
-  struct Side {
-    TriangleId triangle;
-    int side;
-  };
-  std::unordered_map<std::uint64_t, Side> open;
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      if (tin.triangles[t].n[i] != kNone) {
-        continue;
-      }
-      const VertexId a = tin.triangles[t].v[next_corner(i)];
-      const VertexId b = tin.triangles[t].v[previous_corner(i)];
-      const std::uint64_t edge = (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-      const auto [other, is_new] = open.try_emplace(edge, Side{t, i});
-      if (!is_new) {
-        tin.triangles[t].n[i] = other->second.triangle;
-        tin.triangles[other->second.triangle].n[other->second.side] = t;
-        open.erase(other);
-      }
-    }
-  }
+  return place;
 }
 
 /// Gives every vertex a triangle as I6 asks, and its degree.
@@ -260,7 +231,7 @@ Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& p
   Tile to;
   to.units = parts.front().units;
   to.samples_fill_grid = parts.front().samples_fill_grid;
-  const JoinedVertices joined = join_vertices(parts, to);
+  const std::vector<Renumbering> place = join_vertices(parts, to);
   reserve_for(parts, to);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Tile& part = parts[p];
@@ -270,7 +241,7 @@ Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& p
     for (TriangleId t = 0; t < part.tin.triangles.size(); ++t) {
       Triangle triangle = part.tin.triangles[t];
       for (int i = 0; i < 3; ++i) {
-        triangle.v[i] = joined.place[p][triangle.v[i]];
+        triangle.v[i] = place[p][triangle.v[i]];
         triangle.n[i] = triangle.n[i] == kNone ? kNone : triangle.n[i] + first_triangle;
       }
       CarriedState state = part.carried[t];
@@ -285,7 +256,7 @@ Tile join_tiles(std::vector<Tile>&& parts, const TileTree& tree, const TileId& p
     to.records.insert(to.records.end(), part.records.begin(), part.records.end());
     part = {};
   }
-  link_seams(to.tin);
+  link_sides(to.tin);
   settle_vertices(to);
   lock_seams(to, tree, parent);
   return to;

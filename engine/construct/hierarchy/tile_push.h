@@ -11,8 +11,8 @@
 
 namespace ptin {
 
-/// What is left of a tile: its alive vertices and triangles, their samples or witnesses, and of its
-/// records those that a triangle carries. The parent takes these records as foreign ones.
+/// What is left of a tile: its alive vertices and triangles, all their samples or carried ones, and
+/// of its records those that a triangle carries. The parent takes these records as foreign ones.
 struct PushedTile {
   Tile tile;
   /// For each of tile.records: its index in `records` of the tile that was cut down.

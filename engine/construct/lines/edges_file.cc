@@ -5,18 +5,14 @@
 
 namespace ptin {
 
-void put_edges(ArrayFileWriter& file, const FixedEdges& edges) {
-  file.put(edges.vertices());
-  file.put(edges.edges());
-  file.put(edges.sides_without_ground());
+void serialize(ArrayFileWriter& file, const FixedEdges& edges) {
+  file.values(edges.vertices(), edges.edges(), edges.sides_without_ground());
 }
 
-FixedEdges take_edges(ArrayFileReader& file) {
+void serialize(ArrayFileReader& file, FixedEdges& edges) {
   LineGraph lines;
-  lines.vertices = file.take_copy<LineVertex>();
-  lines.edges = file.take_copy<LineEdge>();
-  lines.without_ground = file.take_copy<SideWithoutGround>();
-  return FixedEdges(std::move(lines));
+  file.values(lines.vertices, lines.edges, lines.without_ground);
+  edges = FixedEdges(std::move(lines));
 }
 
 }  // namespace ptin

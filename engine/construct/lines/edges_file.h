@@ -8,11 +8,9 @@
 
 namespace ptin {
 
-/// Appends edges and their vertices. Cost: linear in them.
-/// @throws Error io_error, resource_exhausted
-void put_edges(ArrayFileWriter& file, const FixedEdges& edges);
-/// Reads the edges that put_edges() wrote at this place of the file. Cost: as FixedEdges().
-/// @throws Error corruption  they are not what was written
-[[nodiscard]] FixedEdges take_edges(ArrayFileReader& file);
+/// Cost: linear in the edges to write them, as FixedEdges() to read them.
+/// @throws Error as ArrayFileWriter::values(), ArrayFileReader::values()
+void serialize(ArrayFileWriter& file, const FixedEdges& edges);
+void serialize(ArrayFileReader& file, FixedEdges& edges);
 
 }  // namespace ptin

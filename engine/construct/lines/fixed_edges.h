@@ -28,7 +28,7 @@ class FixedEdges {
   /// True when nothing is fixed, and nothing is outside.
   [[nodiscard]] bool is_empty() const noexcept { return graph_.edges.empty() && !has_boundary_; }
   [[nodiscard]] bool has_boundary() const noexcept { return has_boundary_; }
-  [[nodiscard]] std::span<const LineVertex> vertices() const noexcept { return graph_.vertices; }
+  [[nodiscard]] std::span<const GridVertex> vertices() const noexcept { return graph_.vertices; }
   [[nodiscard]] std::span<const LineEdge> edges() const noexcept { return graph_.edges; }
   [[nodiscard]] std::span<const SideWithoutGround> sides_without_ground() const noexcept {
     return graph_.without_ground;

@@ -93,10 +93,10 @@ double Noding::height_on(const LineEdge& e, GridPoint p) const {
 /// Makes one of the vertices at each position.
 void Noding::join_vertices() {
   std::vector<std::uint32_t> place(graph_.vertices.size());
-  std::vector<LineVertex> kept;
+  std::vector<GridVertex> kept;
   std::vector<double> highest;
   for (std::size_t i = 0; i < graph_.vertices.size(); ++i) {
-    const LineVertex& v = graph_.vertices[i];
+    const GridVertex& v = graph_.vertices[i];
     const auto [found, is_new] =
         by_place_.try_emplace(key_of(v.position), static_cast<std::uint32_t>(kept.size()));
     place[i] = found->second;
@@ -283,7 +283,7 @@ void Noding::sort_all() {
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t v, std::uint32_t w) { return key_of(at(v)) < key_of(at(w)); });
   std::vector<std::uint32_t> place(graph_.vertices.size(), 0);
-  std::vector<LineVertex> sorted;
+  std::vector<GridVertex> sorted;
   for (const std::uint32_t v : order) {
     place[v] = static_cast<std::uint32_t>(sorted.size());
     sorted.push_back(graph_.vertices[v]);

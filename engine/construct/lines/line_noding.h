@@ -9,16 +9,11 @@
 #include <stop_token>
 #include <vector>
 
+#include "engine/construct/grid/grid_vertex.h"
 #include "engine/geometry/affine.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {
-
-/// A vertex of a line on the grid.
-struct LineVertex {
-  GridPoint position;
-  double height = 0.0;  ///< As PointGrid::height() has it.
-};
 
 /// A straight piece of a line between two vertices, a < b by place.
 struct LineEdge {
@@ -28,28 +23,29 @@ struct LineEdge {
   std::array<bool, 2> unused{};  ///< In the place of padding: edges are written as they are.
 };
 
-/// A side of the boundary, or a part of one, where there is no ground. It tells inside from outside.
+/// A side of the boundary, or a part of one, where there is no ground. It only divides inside from
+/// outside.
 struct SideWithoutGround {
   GridPoint a, b;
 };
 
 /// Lines on the grid, before and after noding.
 struct LineGraph {
-  std::vector<LineVertex> vertices;
+  std::vector<GridVertex> vertices;
   std::vector<LineEdge> edges;
   std::vector<SideWithoutGround> without_ground;  ///< No edges: noding leaves them alone.
   /// How far the grid position of a crossing is from where the lines cross, at most; grid units.
   double largest_bend = 0.0;
 };
 
-/// How heights are compared where lines meet, and how a place is told.
+/// How heights are compared where lines meet, and how a place is named.
 struct NodingRules {
   double height_step = 0.0;  ///< Heights that differ by no more are equal.
   /// False: heights of lines that meet are not compared, since they are those of one surface but for
   /// rounding.
   bool compares_heights = true;
   bool whole_heights = false;   ///< Heights are codes: those of crossings are rounded.
-  double height_of_unit = 1.0;  ///< What one unit of LineVertex::height is in the height's unit.
+  double height_of_unit = 1.0;  ///< What one unit of GridVertex::height is in the height's unit.
   AffineMap map;                ///< For messages.
   /// What there is memory for, crossings included.
   std::uint64_t most_vertices = UINT32_MAX - 1;

@@ -46,7 +46,7 @@ SourceLines read_source_lines(const LineChoice& choice, std::uint64_t most_bytes
                               const std::stop_token& stop) {
   SourceLines lines;
   LineKeeper keeper(most_bytes);
-  const auto read = [&](const std::string& path, const LineWish& wish, const TakeLine& take) {
+  const auto read = [&](const std::string& path, const LayerWish& wish, const TakeLine& take) {
     const LineFileCrs file = read_line_file(path, wish, take, stop);
     lines.files.push_back({path, file.crs, file.units});
     lines.warnings.join(file.warnings);

@@ -19,9 +19,9 @@ namespace ptin {
 /// Lines one after the other, of one kind.
 struct LineSet {
   std::vector<SourcePoint> vertices;
-  std::vector<std::uint64_t> ends;  ///< Of each line: one past the place of its last vertex.
-  /// Beside `vertices`: 0 for a vertex that there is no ground below, whose z means nothing. Empty:
-  /// all have ground.
+  std::vector<std::uint64_t> ends;  ///< One past the place of each line's last vertex.
+  /// 0 for each of `vertices` that has no ground below, and whose z means nothing. Empty: all have
+  /// ground.
   std::vector<std::uint8_t> has_ground;
 
   [[nodiscard]] std::size_t size() const noexcept { return ends.size(); }
@@ -42,7 +42,7 @@ struct LineFileFacts {
 struct SourceLines {
   LineSet breaklines;
   LineSet flat_breaklines;  ///< Without heights: as rings that are flat.
-  LineSet rings;            ///< Of the boundary; the first vertex of each is its last one too.
+  LineSet rings;            ///< The boundary; the first vertex of a ring is its last one too.
   /// The rings have no heights yet: they extend the grid, and nothing else is made of them
   /// (delaunay/line_drape.h).
   bool rings_are_flat = false;

@@ -9,8 +9,8 @@ namespace ptin {
 
 namespace {
 
-/// Tells which spokes of a fan are new to a surface triangle. The first and the last spoke are the
-/// link edges at w.
+/// Finds the spokes of a fan that are new to a surface triangle. The first and the last spoke are
+/// the link edges at w.
 class SpokeFilter {
  public:
   SpokeFilter(const Tile& tile, const StarSamples& s, const FanFrame& fan)

@@ -27,7 +27,7 @@ namespace ptin {
 /// Who is asked for the gaps to fixed edges, and how far.
 struct FixedQuestion {
   const FullSurface& full;
-  GridBox within = {0, 0, kGridMax, kGridMax};  ///< As for fan_deviation().
+  GridBox within = {0, 0, kGridMax, kGridMax};  ///< The parameter of fan_deviation().
   double stop_above = std::numeric_limits<double>::infinity();
 };
 

@@ -30,7 +30,7 @@ struct FanAssignment {
 /// sample on a spoke goes to the side of its own class. Blocks are measured but not assigned
 /// (construct/collapse/sample_hand_over.h takes them apart).
 /// @param fan   Its buffer `is_surface` may be overwritten.
-/// @param full  As for measure_with_voids().
+/// @param full  That of measure_with_voids().
 /// REQUIRES: gather_samples() and gather_sources() were called. Cost: samples times degree.
 [[nodiscard]] FanError measure_fan(const Tile& tile, const StarSamples& s, FanFrame& fan,
                                    const FullSurface* full, FanAssignment& assignment);

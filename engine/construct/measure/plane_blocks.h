@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Squares of samples with a plane and a bound beside it: one look at a square tells whether a sample
-// in it can be farther from a triangle than what is known.
+// Squares of samples with a plane and a bound beside it: one look at a square shows whether a
+// sample in it can be farther from a triangle than what is known.
 #pragma once
 
 #include <array>

@@ -47,11 +47,10 @@ struct StarSamples {
   /// Samples: u; then the first one of each list; then the others; then the further three corners
   /// of each block; then padding. u and the samples of the lists are the **elements**.
   std::vector<double> x, y, z;
-  /// Beside x, but only where surface_only is false: what an element is charged in the wrong class,
-  /// and 1 for one without a height, else 0. Further corners and padding count as without a height,
-  /// at no charge.
+  /// What each element is charged in the wrong class, and 1 if it has no height, else 0; only where
+  /// surface_only is false. Further corners and padding count as without a height, at no charge.
   std::vector<double> charge, is_void;
-  std::size_t count = 0;  ///< Of elements; 0 while samples have not been gathered.
+  std::size_t count = 0;  ///< How many elements; 0 while samples have not been gathered.
   std::vector<SampleBlock> blocks;
   /// Which elements have a direction: witnesses of triangles, not samples. Where surface_only is
   /// false they count in the arrays as without a height, at no charge, and are measured apart.

@@ -104,10 +104,10 @@ void measure_sample(const Tile& tile, const SamplePlace& place, float reach, Voi
 
 /// What kSampleLanes samples are found to cost.
 struct LaneMeasure {
-  /// Of a sample with a height: the largest in a surface triangle that holds it; -1 where none
-  /// does. 0 of one without a height.
+  /// The largest residual of a sample with a height in a surface triangle that holds it; -1 where
+  /// none does. 0 for a sample without a height.
   Lanes residual;
-  Lanes charge;  ///< Of a sample without a height: 0 where a void triangle holds it. Else 0.
+  Lanes charge;  ///< Charge of a sample without a height: 0 where a void triangle holds it. Else 0.
 };
 
 PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,

@@ -46,7 +46,7 @@ struct VoidMeasure {
 ///
 /// @param fan         Its buffer `is_surface` is overwritten.
 /// @param full        The full surface under the tile: how far new edges of the border move it. Null
-///     in a tile of witnesses, where they are not charged.
+///     in a tile of carried samples, where they are not charged.
 /// @param stop_above  Returns early, with the largest so far, once the error exceeds this.
 /// Cost: samples times degree, in lanes; samples that lose their surface one by one.
 [[nodiscard]] VoidMeasure measure_with_voids(

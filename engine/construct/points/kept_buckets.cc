@@ -13,12 +13,17 @@
 
 namespace ptin {
 
-/// The plain values of buckets.
-struct PointBuckets::Kept {
-  PointCounts counts;
-  std::uint64_t size, bucket_points;
-  std::uint64_t codes_are_whole;
-};
+namespace {
+
+/// What is kept of an index; its hull and its boxes are told apart.
+template <class File, class Index, class Corners, class Boxes>
+void serialize_index(File& file, Index& index, Corners& hull, Boxes&& boxes) {
+  file.values(index.counts, index.size, index.bucket_points, index.codes_are_whole, index.frame,
+              index.empty_inputs, index.warnings, hull, index.ranges, boxes, index.ends,
+              index.checksums, index.fixed);
+}
+
+}  // namespace
 
 SourceDisk PointBuckets::disk_of(std::uint64_t points, PointMerge rule) noexcept {
   const std::uint64_t sorted =
@@ -39,19 +44,8 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
   for (const auto& file : files_) {
     file->sync();
   }
-  const Kept kept{index_.counts, index_.size, index_.bucket_points,
-                  index_.codes_are_whole ? 1U : 0U};
   ArrayFileWriter file(files, index);
-  file.put(std::span(&kept, 1));
-  put_frame(file, index_.frame);
-  file.put(index_.empty_inputs);
-  put_warnings(file, index_.warnings);
-  file.put(index_.hull.corners());
-  file.put(index_.ranges);
-  file.put(boxes_.boxes());
-  file.put(index_.ends);
-  file.put(index_.checksums);
-  put_edges(file, index_.fixed);
+  serialize_index(file, index_, index_.hull.corners(), boxes_.boxes());
   file.sync();
   return file.finish();
 }
@@ -59,21 +53,10 @@ ArrayFileFacts PointBuckets::save(FileLayer& files, const std::string& index) co
 PointBuckets PointBuckets::load(FileLayer& files, const std::string& buckets,
                                 const std::string& index, const ArrayFileFacts& facts) {
   ArrayFileReader file(index, facts);
-  const Kept kept = file.take<Kept>()[0];
   Index result;
-  result.frame = take_frame(file);
-  result.counts = kept.counts;
-  result.size = kept.size;
-  result.bucket_points = kept.bucket_points;
-  result.codes_are_whole = kept.codes_are_whole != 0;
-  result.empty_inputs = file.take_copy<std::uint64_t>();
-  result.warnings = take_warnings(file);
-  result.hull = ConvexHull(file.take_copy<GridPoint>());
-  result.ranges = file.take_copy<Range>();
-  result.boxes = file.take_copy<GridBox>();
-  result.ends = file.take_copy<std::uint64_t>();
-  result.checksums = file.take_copy<std::uint64_t>();
-  result.fixed = take_edges(file);
+  std::vector<GridPoint> hull;
+  serialize_index(file, result, hull, result.boxes);
+  result.hull = ConvexHull(std::move(hull));
   PointBuckets points(files, buckets, std::move(result));
   points.require_whole();
   return points;

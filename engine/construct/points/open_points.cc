@@ -22,11 +22,16 @@ constexpr std::size_t kBatchPoints = 4096;
 class TextPoints final : public PointStream {
  public:
   /// @param nodata  Takes the place of the value that comments say means no height.
+  /// @param invalid_row  As StreamResources::invalid_row.
   TextPoints(const std::string& path, const PointChoice& choice, std::optional<double> nodata,
-             const PointPart& part)
+             TakeInvalidRow invalid_row, const PointPart& part)
       : path_(path),
         is_whole_(part.is_whole()),
-        reader_(path, choice.columns, part, choice.skip_invalid) {
+        invalid_row_(std::move(invalid_row)),
+        reader_(path, choice.columns, part,
+                choice.skip_invalid || invalid_row_
+                    ? [this](std::uint64_t line, const std::string& fault) { skip(line, fault); }
+                    : TakeInvalidRow()) {
     const GdalSession session;
     VSIStatBufL status;
     if (!is_packed(path) && VSIStatL(path.c_str(), &status) == 0) {
@@ -35,7 +40,7 @@ class TextPoints final : public PointStream {
     }
     facts_.units = reader_.units();
     if (facts_.units.plane == "degree") {
-      facts_.units.plane.clear();  // A CRS alone tells what degrees are on the ground.
+      facts_.units.plane.clear();  // Only a CRS says what degrees are on the ground.
     }
     take_comments(nodata.has_value());
     reader_.declared().tell(path, warnings_);
@@ -57,17 +62,13 @@ class TextPoints final : public PointStream {
   [[nodiscard]] LeftOutPoints left_out() const noexcept override {
     LeftOutPoints points;
     points.add(LeftOutReason::kNodata, left_out_);
-    points.add(LeftOutReason::kInvalid, reader_.skipped().rows);
+    points.add(LeftOutReason::kInvalid, skipped_.count);
     return points;
   }
   [[nodiscard]] SourceWarnings warnings() const override {
     SourceWarnings all = warnings_;
-    if (const XyzReader::Skipped& skipped = reader_.skipped(); skipped.rows > 0) {
-      all.add({.kind = "invalid_rows",
-               .message = "a row is no point and was passed over: " + skipped.fault,
-               .file = path_,
-               .line = skipped.line,
-               .count = skipped.rows});
+    if (skipped_.count > 0) {
+      all.add(skipped_);
     }
     return all;
   }
@@ -78,8 +79,18 @@ class TextPoints final : public PointStream {
   [[nodiscard]] std::uint64_t total() const noexcept override { return total_; }
 
  private:
-  std::string path_;
-  bool is_whole_;
+  /// Counts a row that is no point; the first of them is reported.
+  void skip(std::uint64_t line, const std::string& fault) {
+    if (skipped_.count++ == 0) {
+      skipped_.kind = "invalid_rows";
+      skipped_.message = "a row is no point and was passed over: " + fault;
+      skipped_.file = path_;
+      skipped_.line = line;
+    }
+    if (invalid_row_) {
+      invalid_row_(line, fault);
+    }
+  }
   /// Takes what comments declare; the names of columns go before them.
   void take_comments(bool is_nodata_told) {
     const DeclaredComments& declared = reader_.declared();
@@ -102,7 +113,11 @@ class TextPoints final : public PointStream {
     }
   }
 
+  std::string path_;
+  bool is_whole_;
+  TakeInvalidRow invalid_row_;
   XyzReader reader_;
+  SourceWarning skipped_;  ///< What to say of the rows that were passed over.
   PointStreamFacts facts_;
   SourceWarnings warnings_;
   std::optional<double> nodata_;  ///< The one that comments declare.
@@ -150,7 +165,7 @@ std::unique_ptr<PointStream> open_point_stream(const std::string& path, const Po
     case PointFormat::kLas:
       return std::make_unique<LasReader>(path, choice, part);
     case PointFormat::kText:
-      return std::make_unique<TextPoints>(path, choice, nodata, part);
+      return std::make_unique<TextPoints>(path, choice, nodata, resources.invalid_row, part);
     case PointFormat::kLayer:
       break;
   }

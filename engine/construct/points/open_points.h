@@ -15,8 +15,8 @@ namespace ptin {
 /// Opens a file of points by its format (read/input_kind.h): LAS (read/las_reader.h), a TIN for its
 /// vertices (tin/tin_vertices.h), text (read/xyz_reader.h), anything else as a layer of OGR's
 /// (read/ogr_points.h).
-/// @param nodata     The height that means none. Of a TIN, only vertices are handed out that belong
-///                   to a triangle with three heights, as when the TIN itself is built. Of text it
+/// @param nodata     The height that means none. A TIN hands out only vertices that belong to a
+///                   triangle with three heights, as when the TIN itself is built. For text it
 ///                   takes the place of a value that a comment declares. Points with this height are
 ///                   handed out all the same.
 /// @param resources  For a TIN, while it is opened.

@@ -24,10 +24,10 @@ bool is_whole(double h) {
 
 bool is_float(double h) { return static_cast<double>(static_cast<float>(h)) == h; }
 
-HeightKey key_for(std::span<const PlacedHeight> points) {
+HeightKey key_for(std::span<const GridVertex> points) {
   const auto all = [&](bool (*holds)(double)) {
     return std::all_of(points.begin(), points.end(),
-                       [&](const PlacedHeight& p) { return holds(p.height); });
+                       [&](const GridVertex& p) { return holds(p.height); });
   };
   return all(is_whole) ? HeightKey::kWhole
                        : (all(is_float) ? HeightKey::kFloat : HeightKey::kDouble);
@@ -126,11 +126,11 @@ constexpr std::size_t kHeader = 10;  // bytes: the kind of key, the bits of a he
 
 }  // namespace
 
-void pack_bucket(std::span<const PlacedHeight> points, const GridBox& box,
+void pack_bucket(std::span<const GridVertex> points, const GridBox& box,
                  std::vector<std::byte>& to) {
   const HeightKey kind = key_for(points);
   std::uint64_t low = ~std::uint64_t{0}, high = 0;
-  for (const PlacedHeight& p : points) {
+  for (const GridVertex& p : points) {
     const std::uint64_t key = key_of_height(p.height, kind);
     low = std::min(low, key);
     high = std::max(high, key);
@@ -141,7 +141,7 @@ void pack_bucket(std::span<const PlacedHeight> points, const GridBox& box,
   to[1] = static_cast<std::byte>(widths.height);
   std::memcpy(to.data() + 2, &low, sizeof low);
   BitWriter bits(to);
-  for (const PlacedHeight& p : points) {
+  for (const GridVertex& p : points) {
     bits.put(static_cast<std::uint64_t>(std::int64_t{p.position.x} - box.min_x), widths.x);
     bits.put(static_cast<std::uint64_t>(std::int64_t{p.position.y} - box.min_y), widths.y);
     bits.put(key_of_height(p.height, kind) - low, widths.height);
@@ -150,7 +150,7 @@ void pack_bucket(std::span<const PlacedHeight> points, const GridBox& box,
 }
 
 void unpack_bucket(std::span<const std::byte> bytes, const GridBox& box,
-                   std::span<PlacedHeight> points) {
+                   std::span<GridVertex> points) {
   if (bytes.size() < kHeader) {
     return;
   }
@@ -163,7 +163,7 @@ void unpack_bucket(std::span<const std::byte> bytes, const GridBox& box,
     return;
   }
   BitReader bits(bytes.data() + kHeader);
-  for (PlacedHeight& p : points) {
+  for (GridVertex& p : points) {
     p.position.x =
         static_cast<std::int32_t>(box.min_x + static_cast<std::int64_t>(bits.take(widths.x)));
     p.position.y =

@@ -8,17 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "engine/construct/grid/grid_vertex.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/point.h"
 
 namespace ptin {
-
-/// A point before its height is encoded; the height is as PointGrid::height() has it.
-struct PlacedHeight {
-  GridPoint position;
-  double height = 0.0;
-  friend bool operator==(const PlacedHeight&, const PlacedHeight&) = default;
-};
 
 /// Packs points, in their order. Coordinates are stored relative to the corner of `box`, in as many
 /// bits as its sides need. A height is stored as a number, relative to the least of these numbers,
@@ -27,7 +21,7 @@ struct PlacedHeight {
 /// the sign of a zero.
 /// @param box   The box of the points.
 /// @param to    Overwritten. Its size is at most 10 bytes and kMostPackedBytes a point.
-void pack_bucket(std::span<const PlacedHeight> points, const GridBox& box,
+void pack_bucket(std::span<const GridVertex> points, const GridBox& box,
                  std::vector<std::byte>& to);
 inline constexpr std::uint64_t kMostPackedBytes = 16;
 
@@ -38,7 +32,7 @@ inline constexpr std::uint64_t kMostPackedBytes = 16;
 /// @param points  As many as are wanted, at most those of the bucket. Overwritten; left as they are
 ///                where `bytes` are too few for so many.
 void unpack_bucket(std::span<const std::byte> bytes, const GridBox& box,
-                   std::span<PlacedHeight> points);
+                   std::span<GridVertex> points);
 inline constexpr std::size_t kUnpackSlack = 8;
 
 }  // namespace ptin

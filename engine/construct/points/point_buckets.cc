@@ -75,7 +75,7 @@ void PointBuckets::take(std::uint64_t first, std::uint64_t count,
   points.clear();
   points.reserve(count);
   std::vector<std::byte> packed;
-  std::vector<PlacedHeight> bucket;
+  std::vector<GridVertex> bucket;
   std::uint64_t number = count == 0 ? 0 : bucket_of(first);
   for (std::uint64_t at = first; at < first + count; ++number) {
     const std::uint64_t begin = begin_of(number);
@@ -84,7 +84,7 @@ void PointBuckets::take(std::uint64_t first, std::uint64_t count,
     bucket.resize(end - begin);
     unpack_bucket(std::span(packed).first(packed.size() - kUnpackSlack), box(number), bucket);
     for (; at < end; ++at) {
-      const PlacedHeight& p = bucket[at - begin];
+      const GridVertex& p = bucket[at - begin];
       points.push_back({p.position, stored(p.height)});
     }
   }

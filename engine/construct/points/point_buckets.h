@@ -64,9 +64,9 @@ class PointBuckets {
     std::uint64_t bucket_points = 0;  ///< Points of a bucket that is not its range's last.
     bool codes_are_whole = false;     ///< Heights on disk are codes.
     std::vector<Range> ranges;
-    std::vector<GridBox> boxes;            ///< Of the buckets.
+    std::vector<GridBox> boxes;            ///< Boxes of the buckets.
     std::vector<std::uint64_t> ends;       ///< Where each bucket ends in the file of its range.
-    std::vector<std::uint64_t> checksums;  ///< Of the buckets.
+    std::vector<std::uint64_t> checksums;  ///< Checksums of the buckets.
     FixedEdges fixed;
   };
 
@@ -131,7 +131,6 @@ class PointBuckets {
   }
 
  private:
-  struct Kept;
   void require_whole() const;
   /// A height as the file of buckets holds it, as terrains store it.
   [[nodiscard]] HeightBits stored(double height) const;
@@ -141,7 +140,7 @@ class PointBuckets {
 
   Index index_;  ///< But for the boxes.
   PackedBoxes boxes_;
-  std::string path_;                                 ///< Of the files, without a number.
+  std::string path_;                                 ///< The files' path, without a number.
   std::vector<std::unique_ptr<ScratchFile>> files_;  ///< By range.
 };
 

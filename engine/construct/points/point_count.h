@@ -15,8 +15,8 @@ namespace ptin {
 
 /// What is known of the points of some inputs before they are read.
 struct PointCount {
-  /// Points of all inputs, those that a choice leaves out included. Of LAS the header says it; of a
-  /// layer OGR says its features, or nothing, which counts as 0; text and TINs are estimated from
+  /// Points of all inputs, those that a choice leaves out included. The header of LAS says it; OGR
+  /// says the features of a layer, or nothing, which counts as 0; text and TINs are estimated from
   /// how they begin (read/tin_count.h).
   std::uint64_t points = 0;
   std::vector<std::uint64_t> of_tins;  ///< Vertices of each, the largest first.

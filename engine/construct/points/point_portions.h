@@ -18,7 +18,7 @@ namespace ptin {
 struct PointPortion {
   std::uint64_t input = 0;  ///< The number of the file among the inputs.
   PointPart part;
-  std::uint64_t bytes = 1;  ///< Of the part in the file, about: for progress.
+  std::uint64_t bytes = 1;  ///< Bytes of the part in the file, about: for progress.
 };
 
 /// How large portions are, at most; a file that cannot be begun in the middle is one portion.
@@ -30,7 +30,7 @@ struct PortionSizes {
 /// True for a pipe, a socket or a device: what is read of it is gone.
 [[nodiscard]] bool can_be_read_once_only(const std::string& path);
 
-/// Refuses files that do not go together. To be told of all files in their order.
+/// Refuses files that do not go together. Wants all files, in their order.
 class SourceAgreement {
  public:
   explicit SourceAgreement(const SourceOptions& options) : options_(&options) {}
@@ -39,7 +39,7 @@ class SourceAgreement {
   [[nodiscard]] const std::string& crs() const noexcept { return crs_; }
   [[nodiscard]] const std::string& vertical_crs() const noexcept { return vertical_crs_; }
   [[nodiscard]] const DeclaredUnits& units() const noexcept { return units_; }
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< Of the first.
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< The first one's.
 
  private:
   void require(bool is_same, const std::string& path) const;

@@ -6,7 +6,6 @@
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/grid/crs_beside.h"
-#include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/lines/source_lines.h"
 #include "engine/construct/points/open_points.h"
 #include "engine/construct/points/point_spool.h"
@@ -24,64 +23,6 @@ namespace {
 /// So many samples are joined at most: all portions together have no more memory than few have.
 constexpr std::size_t kMostSamples = std::size_t{1} << 18;
 
-/// RowsOfPart without a byte that means nothing: what is done again is done with the same bytes.
-struct PlainRows {
-  std::uint64_t may_be, is_guess, by_one, has_repeats, has_decimals;
-  std::int64_t first, last;
-  std::uint64_t rows, lines, last_row;
-};
-
-PlainRows plain_of(const RowsOfPart& part) {
-  const RowNumbering& n = part.numbering;
-  const auto number = [](bool flag) { return std::uint64_t{flag ? 1U : 0U}; };
-  return {number(n.may_be),
-          number(n.is_guess),
-          number(n.by_one),
-          number(n.has_repeats),
-          number(n.has_decimals),
-          n.first,
-          n.last,
-          n.rows,
-          part.lines,
-          part.last_row};
-}
-
-RowsOfPart rows_of(const PlainRows& p) {
-  return {{p.may_be != 0, p.is_guess != 0, p.by_one != 0, p.has_repeats != 0, p.has_decimals != 0,
-           p.first, p.last, p.rows},
-          p.lines,
-          p.last_row};
-}
-
-/// The plain values of a portion.
-struct PlainRead {
-  PointExtent extent;
-  LeftOutPoints left_out;
-  std::uint64_t sample_step;
-  SourceLattice lattice;
-  PlainRows rows;
-  std::int32_t plan_decimals, height_decimals;
-  std::uint32_t has_lattice, has_rows;
-};
-
-/// Tells how much of a portion is done, in its bytes.
-class PortionProgress {
- public:
-  PortionProgress(const PointPortion& portion, const Task& task)
-      : bytes_(portion.bytes), task_(task) {}
-  void operator()(std::uint64_t done, std::uint64_t total) const {
-    if (task_.progress) {
-      const double share =
-          total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
-      task_.progress(static_cast<std::uint64_t>(share * static_cast<double>(bytes_)));
-    }
-  }
-
- private:
-  std::uint64_t bytes_;
-  const Task& task_;
-};
-
 }  // namespace
 
 void EvenSample::add(const SourcePoint& p) {
@@ -98,57 +39,6 @@ void EvenSample::add(const SourcePoint& p) {
   points_.push_back({p.x.mantissa, p.y.mantissa, p.x.decimals, p.y.decimals});
 }
 
-void put(ArrayFileWriter& file, const PortionRead& read) {
-  const PointStreamFacts& source = read.source;
-  const PlainRead plain{read.extent,
-                        read.left_out,
-                        read.sample_step,
-                        source.lattice.value_or(SourceLattice{}),
-                        plain_of(read.rows.value_or(RowsOfPart{})),
-                        source.plan_decimals,
-                        source.height_decimals,
-                        source.lattice ? 1U : 0U,
-                        read.rows ? 1U : 0U};
-  file.put(std::span(&plain, 1));
-  for (const std::string* text :
-       {&source.crs, &source.vertical_crs, &source.units.plane, &source.units.heights}) {
-    file.put_text(*text);
-  }
-  put_warnings(file, read.warnings);
-  file.put(read.samples);
-}
-
-PortionRead take_portion_read(ArrayFileReader& file) {
-  const PlainRead plain = file.take<PlainRead>()[0];
-  PortionRead read;
-  read.extent = plain.extent;
-  read.left_out = plain.left_out;
-  read.sample_step = plain.sample_step;
-  read.rows = plain.has_rows != 0 ? std::optional(rows_of(plain.rows)) : std::nullopt;
-  read.source.plan_decimals = plain.plan_decimals;
-  read.source.height_decimals = plain.height_decimals;
-  read.source.lattice = plain.has_lattice != 0 ? std::optional(plain.lattice) : std::nullopt;
-  for (std::string* text : {&read.source.crs, &read.source.vertical_crs, &read.source.units.plane,
-                            &read.source.units.heights}) {
-    *text = file.take_text();
-  }
-  read.warnings = take_warnings(file);
-  read.samples = file.take_copy<SampledPoint>();
-  return read;
-}
-
-void put(ArrayFileWriter& file, const ReadingPlan& plan) {
-  file.put(std::span(&plan.first_number, 1));
-  file.put(plan.portions);
-}
-
-ReadingPlan take_reading_plan(ArrayFileReader& file) {
-  ReadingPlan plan;
-  plan.first_number = file.take<std::uint64_t>()[0];
-  plan.portions = file.take_copy<PointPortion>();
-  return plan;
-}
-
 PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint64_t number,
                                          const Task& task) {
   const std::string& path = inputs_[portion.input];
@@ -156,7 +46,10 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   if (point_format_of(path, options_.points) == PointFormat::kTin) {
     alone.lock();
   }
-  const PortionProgress progress(portion, task);
+  const auto progress = [&](std::uint64_t done, std::uint64_t total) {  // told in bytes
+    const double share = total == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(total);
+    task.tell(static_cast<std::uint64_t>(share * static_cast<double>(portion.bytes)));
+  };
   const ExternalMemory memory{files_.files, files_.folder, task.bytes};
   const auto stream = open_point_stream(path, options_.points, options_.nodata,
                                         {&memory, task.stop, progress}, portion.part);
@@ -164,11 +57,12 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.source = stream->facts();
   SourceWarnings of_crs;
   const bool is_layer = point_format_of(path, options_.points) == PointFormat::kLayer;
-  // OGR looks at a .prj where one belongs to a layer; that it is another CRS is told once a file.
+  // OGR looks at a .prj where one belongs to a layer; that it is another CRS is reported once a
+  // file.
   if (result.source.crs.empty() || (!is_layer && portion.part.begin == 0)) {
     take_crs_beside(path, result.source.crs, of_crs);
   }
-  SpoolWriter writer(files_.files, files_.path("spool", number), number);
+  SpoolWriter writer(files_.files, files_.path("spool", number));
   EvenSample sample;
   std::vector<SourcePoint> batch;
   while (stream->next(batch)) {
@@ -188,7 +82,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
   result.rows = stream->rows();
   result.warnings = stream->warnings();
   result.warnings.join(of_crs);
-  writer.finish();
+  result.spool = writer.finish();
   result.samples = sample.points();
   result.sample_step = sample.step();
   return result;
@@ -199,7 +93,7 @@ std::optional<ArrayFileFacts> PortionReader::read(const PointPortion& portion, s
   try {
     const PortionRead result = read_to_spool(portion, number, task);
     ArrayFileWriter file(files_.files, files_.path("read", number));
-    put(file, result);
+    file.values(result);
     return file.finish();
   } catch (const QuotesInPart&) {
     without_old(files_.files, files_.path("spool", number));
@@ -302,7 +196,8 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
   for (std::size_t i = 0; i < portions.size(); ++i) {
     const SpooledPortion& p = portions[i];
     ArrayFileReader file = files.open(files.path("read", p.number), p.facts);
-    const PortionRead read = take_portion_read(file);
+    PortionRead read;
+    file.values(read);
     if (i == 0 || portions[i - 1].portion.input != p.portion.input) {
       agreement.add(read.source, inputs[p.portion.input]);
       reading.scan.add_source(read.source);
@@ -316,7 +211,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     reading.left_out.join(read.left_out);
     reading.warnings.join(warnings_that_count(read.warnings, options, lines_before));
     if (read.extent.points > 0) {
-      reading.spools.push_back({p.number, read.extent.points});
+      reading.spools.push_back({p.number, read.extent.points, read.spool});
     }
     add_samples(read, sample_step, reading);
   }

@@ -17,6 +17,7 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
+#include "engine/construct/grid/warnings_file.h"
 #include "engine/construct/points/point_files.h"
 #include "engine/construct/points/point_portions.h"
 #include "engine/construct/read/point_part.h"
@@ -48,25 +49,30 @@ class EvenSample {
 /// What one portion is, when it has been read.
 struct PortionRead {
   PointStreamFacts source;
-  PointExtent extent;        ///< Of the wanted points.
+  PointExtent extent;        ///< Extent of the wanted points.
   LeftOutPoints left_out{};  ///< By the stream, or since they are not wanted.
   std::optional<RowsOfPart> rows;
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
+  ArrayFileFacts spool;  ///< Of the file of its points.
 };
-void put(ArrayFileWriter& file, const PortionRead& read);
-/// @throws Error corruption
-[[nodiscard]] PortionRead take_portion_read(ArrayFileReader& file);
+template <class File, MaybeConst<PortionRead> Read>
+void serialize(File& file, Read& r) {
+  file.values(r.source.crs, r.source.vertical_crs, r.source.units.plane, r.source.units.heights,
+              r.source.plan_decimals, r.source.height_decimals, r.source.lattice, r.extent,
+              r.left_out, r.rows, r.warnings, r.samples, r.sample_step, r.spool);
+}
 
 /// The portions of one stage of reading.
 struct ReadingPlan {
-  std::uint64_t first_number = 0;  ///< Of the files that the first of them is written to.
+  std::uint64_t first_number = 0;  ///< Number of the file that the first of them is written to.
   std::vector<PointPortion> portions;
 };
-void put(ArrayFileWriter& file, const ReadingPlan& plan);
-/// @throws Error corruption
-[[nodiscard]] ReadingPlan take_reading_plan(ArrayFileReader& file);
+template <class File, MaybeConst<ReadingPlan> Plan>
+void serialize(File& file, Plan& p) {
+  file.values(p.first_number, p.portions);
+}
 
 /// Reads portions of a source. Threads: any number.
 class PortionReader {
@@ -106,13 +112,14 @@ struct PointReading {
   std::string vertical_crs{};  ///< Likewise.
   DeclaredUnits units{};       ///< Those of all files.
   std::string crs_path{};      ///< The file that declared these first.
-  PointGridScan scan;          ///< Of all points and files.
+  PointGridScan scan;          ///< What all points and files say.
   LeftOutPoints left_out{};
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
   SourceWarnings warnings{};                  ///< Warnings of all portions.
   struct Spool {
     std::uint64_t number = 0;
     std::uint64_t points = 0;
+    ArrayFileFacts facts;
   };
   std::vector<Spool> spools{};  ///< In the order of the source; none is empty.
   struct Sample {

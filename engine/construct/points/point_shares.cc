@@ -41,7 +41,7 @@ class ShareWriter {
     }
     file_.close();
     counts.records = records_;
-    facts.put(std::span<const ShareCounts>(&counts, 1));
+    facts.values(counts);
     for (const std::vector<ShareBlock>& blocks : blocks_) {
       facts.put(blocks);
     }
@@ -68,7 +68,7 @@ class ShareWriter {
   std::uint64_t offset_ = 0, records_ = 0;
 };
 
-/// Calls visit(reader, block, number of the block's first point) for the blocks of a share.
+/// Calls visit(points, number of the first of them) for the blocks of a share.
 template <class Visit>
 void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t share,
                   const Visit& visit) {
@@ -78,14 +78,17 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
   }
   const std::uint64_t begin = all * share / plan.shares, end = all * (share + 1) / plan.shares;
   std::uint64_t first_block = 0, first_point = 0;
+  std::vector<SourcePoint> points;
   for (const PointReading::Spool& spool : plan.spools) {
     const std::uint64_t blocks = spool_blocks(spool.points);
     const std::uint64_t from = std::max(begin, first_block);
     const std::uint64_t to = std::min(end, first_block + blocks);
     if (from < to) {
-      SpoolReader reader(files, spool.number, spool.points);
+      ArrayFileReader file = files.open(files.path("spool", spool.number), spool.facts);
+      skip_blocks(file, from - first_block);
       for (std::uint64_t block = from - first_block; block < to - first_block; ++block) {
-        visit(reader, block, first_point + block * kSpoolBlock);
+        read_block(file, points);
+        visit(points, first_point + block * kSpoolBlock);
       }
     }
     first_block += blocks;
@@ -98,10 +101,10 @@ void visit_blocks(const SortPlan& plan, const PointFiles& files, std::uint64_t s
 template <class Add>
 void add_fixed_vertices(const SortPlan& plan, std::uint64_t share, const Add& add) {
   const PointOrder order = plan.order();
-  const std::span<const LineVertex> all = plan.fixed.vertices();
+  const std::span<const GridVertex> all = plan.fixed.vertices();
   const std::size_t begin = all.size() * share / plan.shares;
   const std::size_t end = all.size() * (share + 1) / plan.shares;
-  for (const LineVertex& v : all.subspan(begin, end - begin)) {
+  for (const GridVertex& v : all.subspan(begin, end - begin)) {
     add(order.key(v.position), v.height);
   }
 }
@@ -120,12 +123,10 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
   const PointOrder order = plan.order();
   ShareWriter<Record> writer(plan, files, number_of(task.name));
   ShareCounts counts;
-  std::vector<SourcePoint> points;
   std::uint64_t done = 0;
   visit_blocks(plan, files, number_of(task.name),
-               [&](SpoolReader& reader, std::uint64_t block, std::uint64_t number) {
+               [&](const std::vector<SourcePoint>& points, std::uint64_t number) {
                  stop_if_asked(task.stop, "sorting the points");
-                 reader.read(block, points);
                  for (const SourcePoint& p : points) {
                    const GridPoint position = plan.grid.position(p);
                    counts.largest_shift_plan =
@@ -143,9 +144,7 @@ ArrayFileFacts share_out_as(const SortPlan& plan, const PointFiles& files, const
                    writer.add(record_of<Record>(order.key(position), plan.grid.height(p.z), n));
                  }
                  done += points.size();
-                 if (task.progress) {
-                   task.progress(done);
-                 }
+                 task.tell(done);
                });
   add_fixed_vertices(plan, number_of(task.name), [&](std::uint64_t key, double height) {
     writer.add(record_of<Record>(key, height, 0));
@@ -165,7 +164,9 @@ ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files, const Ta
 ShareCounts counts_of_share(const PointFiles& files, std::size_t share,
                             const ArrayFileFacts& facts) {
   ArrayFileReader file = files.open(files.path("shared", share), facts);
-  return file.take_copy<ShareCounts>()[0];
+  ShareCounts counts;
+  file.values(counts);
+  return counts;
 }
 
 RangeOfShares::RangeOfShares(const PointFiles& files, const std::vector<ArrayFileFacts>& shares,

@@ -30,10 +30,10 @@ struct ShareBlock {
 };
 
 /// The points of a share of the source, the one of plan.shares that the task has the number of: a place
-/// along the curve and a height for each, to a file in which the records of a range are told, and what is where
-/// to a file beside it; likewise some of the vertices of lines. Left out are points that fall on such a
-/// vertex, or beyond the boundary.
-/// Memory: plan.ranges() * plan.block_records records.
+/// along the curve and a height for each, to a file in which the records of a range lie together,
+/// and what is where to a file beside it; likewise some of the vertices of lines. Left out are
+/// points that fall on such a vertex, or beyond the boundary. Memory: plan.ranges() *
+/// plan.block_records records.
 /// @return  The facts of the latter file.
 /// @throws Error corruption, not_found, io_error, resource_exhausted, cancelled
 [[nodiscard]] ArrayFileFacts share_out(const SortPlan& plan, const PointFiles& files,

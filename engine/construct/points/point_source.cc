@@ -146,7 +146,7 @@ std::vector<SpooledPortion> PointSource::read_all() {
   return all;
 }
 
-/// What the reading and the grid tell of the buckets.
+/// What the reading and the grid say of the buckets.
 PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   const std::string context = inputs_.empty() ? "" : inputs_[0];
   PointBuckets::Index index;

@@ -27,7 +27,7 @@ struct PointWork {
   RunTasks run;  ///< Has the tasks done.
   std::stop_token stop{};
   std::uint64_t memory = std::uint64_t{64} << 20;  ///< For what this process does by itself, bytes.
-  /// Told how far is what this process does by itself; may be empty.
+  /// Called with how far is what this process does by itself; may be empty.
   std::function<void(const StageProgress& progress)> progress{};
   PortionSizes portions{};
   SortSizes sorting{};
@@ -53,8 +53,8 @@ class PointSource {
   ///                resource_exhausted  the disk is full
   ///                cancelled           `work.stop` fired
   ///                corruption          as sort()
-  ///                Of several files that cannot be read, the first one's. All are opened before
-  ///                any is read.
+  ///                If several files cannot be read, the error is the first one's. All are opened
+  ///                before any is read.
   PointSource(const std::vector<std::string>& inputs, const SourceOptions& options, PointWork work);
   /// Removes all files but buckets, whatever comes of that.
   ~PointSource();

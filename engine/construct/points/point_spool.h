@@ -5,13 +5,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
-#include "engine/construct/points/point_files.h"
+#include "engine/construct/scratch/array_file.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin {
@@ -25,44 +24,29 @@ inline constexpr std::uint64_t kSpoolBlock = 4096;
   return (points + kSpoolBlock - 1) / kSpoolBlock;
 }
 
-/// Writes points in blocks, each with its checksum behind it, so that no reader needs to know all of
-/// them. Memory: a block.
+/// Writes points in blocks of two arrays. Memory: a block.
 class SpoolWriter {
  public:
   /// A file of that name is replaced.  @throws Error io_error, resource_exhausted
-  /// @param number  Of the spool: a block of another one is none of this.
-  SpoolWriter(FileLayer& files, const std::string& path, std::uint64_t number);
+  SpoolWriter(FileLayer& files, const std::string& path) : file_(files, path) {}
 
   /// @throws Error io_error, resource_exhausted
   void add(const SourcePoint& p);
   /// Writes the last block, and closes the file.  @throws Error io_error, resource_exhausted
-  void finish();
+  [[nodiscard]] ArrayFileFacts finish();
 
  private:
   void flush();
 
-  ScratchFile file_;
-  std::uint64_t number_;
-  std::vector<std::byte> block_;
-  std::uint64_t blocks_ = 0;  ///< Written so far.
+  ArrayFileWriter file_;
+  std::vector<std::int64_t> mantissas_;
+  std::vector<std::uint8_t> decimals_;
 };
 
-/// Reads them back.
-class SpoolReader {
- public:
-  /// @throws Error corruption  the file has not the length of so many points; not_found, io_error
-  SpoolReader(const PointFiles& files, std::uint64_t number, std::uint64_t points);
-
-  /// @param points  Receives the points of a block.
-  /// @throws Error corruption  the block is not what was written; io_error
-  void read(std::uint64_t block, std::vector<SourcePoint>& points);
-
- private:
-  std::uint64_t number_;
-  std::string path_;
-  std::unique_ptr<ScratchFile> file_;
-  std::uint64_t points_;
-  std::vector<std::byte> bytes_;
-};
+/// Passes over the next `blocks` blocks of a spool.  @throws Error corruption  there are fewer
+void skip_blocks(ArrayFileReader& spool, std::uint64_t blocks);
+/// Reads the next block of a spool.
+/// @throws Error corruption  it is not what was written
+void read_block(ArrayFileReader& spool, std::vector<SourcePoint>& points);
 
 }  // namespace ptin

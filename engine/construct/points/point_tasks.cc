@@ -33,7 +33,7 @@ PointTasks::~PointTasks() = default;
 
 TaskList PointTasks::reading(const ReadingPlan& plan) const {
   ArrayFileWriter file(files_.files, files_.path(kReadingPlan, 0));
-  put(file, plan);
+  file.values(plan);
   std::vector<std::uint64_t> sizes;
   for (const PointPortion& portion : plan.portions) {
     sizes.push_back(portion.bytes);
@@ -43,7 +43,8 @@ TaskList PointTasks::reading(const ReadingPlan& plan) const {
 
 ArrayFileFacts PointTasks::read(const Task& task) {
   ArrayFileReader file = files_.open(files_.path(kReadingPlan, 0), task.inputs.at(0).facts);
-  const ReadingPlan plan = take_reading_plan(file);
+  ReadingPlan plan;
+  file.values(plan);
   const std::size_t number = number_of(task.name);
   return reader_.read(plan.portions.at(number), plan.first_number + number, task)
       .value_or(ArrayFileFacts{});
@@ -51,7 +52,7 @@ ArrayFileFacts PointTasks::read(const Task& task) {
 
 TaskList PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
   ArrayFileWriter file(files_.files, files_.path(kSortPlan, 0));
-  put(file, *plan);
+  file.values(*plan);
   const std::lock_guard lock(mutex_);
   plan_ = std::move(plan);
   plan_facts_ = file.finish();
@@ -64,8 +65,7 @@ TaskList PointTasks::sharing(std::shared_ptr<const SortPlan> plan) {
 TaskList PointTasks::sorting(const std::vector<ArrayFileFacts>& shares) {
   ArrayFileWriter file(files_.files, files_.path(kSharedPlan, 0));
   const std::lock_guard lock(mutex_);
-  file.put(std::span<const ArrayFileFacts>(&plan_facts_, 1));
-  file.put(shares);
+  file.values(plan_facts_, shares);
   const std::uint64_t size = std::max<std::uint64_t>(plan_->points / plan_->ranges(), 1);
   return {TaskKind::kSort, std::vector<std::uint64_t>(plan_->ranges(), size),
           kTaskBytes + plan_->least_memory, file.finish()};
@@ -77,7 +77,9 @@ std::shared_ptr<const SortPlan> PointTasks::plan_of(const ArrayFileFacts& facts)
   if (plan_ == nullptr || plan_facts_ != facts) {
     plan_.reset();
     ArrayFileReader file = files_.open(files_.path(kSortPlan, 0), facts);
-    plan_ = std::make_shared<const SortPlan>(take_sort_plan(file));
+    auto plan = std::make_shared<SortPlan>();
+    file.values(*plan);
+    plan_ = std::move(plan);
     plan_facts_ = facts;
   }
   return plan_;
@@ -92,8 +94,9 @@ ArrayFileFacts PointTasks::index_of(const Task& task) {
     return share_out(*plan_of(plan_of_task), files_, task);
   }
   ArrayFileReader file = files_.open(files_.path(kSharedPlan, 0), plan_of_task);
-  const ArrayFileFacts plan = file.take_copy<ArrayFileFacts>()[0];
-  const std::vector<ArrayFileFacts> shares = file.take_copy<ArrayFileFacts>();
+  ArrayFileFacts plan;
+  std::vector<ArrayFileFacts> shares;
+  file.values(plan, shares);
   return sort_range(*plan_of(plan), shares, files_, task);
 }
 

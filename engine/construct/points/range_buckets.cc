@@ -10,6 +10,7 @@
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_shares.h"
 #include "engine/construct/scratch/external_memory.h"
+#include "engine/construct/scratch/external_sorter.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "storage/file/checksum.h"
@@ -17,12 +18,6 @@
 namespace ptin {
 
 namespace {
-
-struct PlainIndex {
-  std::uint64_t points;
-  double largest_shift_height;
-  HeightFinder::Known heights;
-};
 
 /// Merges points that come in the order of the curve, and writes them in buckets.
 class BucketWriter {
@@ -77,7 +72,7 @@ class BucketWriter {
       return;
     }
     GridBox box;
-    for (const PlacedHeight& p : bucket_) {
+    for (const GridVertex& p : bucket_) {
       box = united(box, p.position);
     }
     pack_bucket(bucket_, box, packed_);
@@ -95,23 +90,21 @@ class BucketWriter {
   ScratchFile file_;
   RangeIndex index_;
   HullCollector hull_;
-  std::vector<PlacedHeight> bucket_;
+  std::vector<GridVertex> bucket_;
   std::vector<std::byte> packed_;
   std::uint64_t key_ = 0;
   std::optional<MergedHeight> merged_;
 };
 
-template <class Sorter, class Record>
+template <class Record>
 RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const PointFiles& files,
                    const Task& task) {
   const ExternalMemory memory{files.files, files.folder, std::max(task.bytes, plan.least_memory)};
-  Sorter sorter(memory, "points", task.stop);
+  ExternalSorter<Record> sorter(memory, "points", task.stop);
   sorter.expect(records.records());
   const auto report = [&](std::uint64_t done) {
     stop_if_asked(task.stop, "sorting the points");
-    if (task.progress) {
-      task.progress(done / 2);
-    }
+    task.tell(done / 2);
   };
   records.read<Record>([&](std::span<const Record> some) {
     for (const Record& r : some) {
@@ -137,28 +130,17 @@ RangeIndex sort_as(const SortPlan& plan, const RangeOfShares& records, const Poi
 ArrayFileFacts sort_range(const SortPlan& plan, const std::vector<ArrayFileFacts>& shares,
                           const PointFiles& files, const Task& task) {
   const RangeOfShares records(files, shares, number_of(task.name));
-  const RangeIndex index =
-      plan.is_numbered() ? sort_as<NumberedPointSorter, NumberedHeight>(plan, records, files, task)
-                         : sort_as<PointSorter, KeyedHeight>(plan, records, files, task);
+  const RangeIndex index = plan.is_numbered() ? sort_as<NumberedHeight>(plan, records, files, task)
+                                              : sort_as<KeyedHeight>(plan, records, files, task);
   ArrayFileWriter file(files.files, files.path("range", number_of(task.name)));
-  const PlainIndex plain{index.points, index.largest_shift_height, index.heights.known()};
-  file.put(std::span(&plain, 1));
-  file.put(index.hull);
-  file.put(index.boxes);
-  file.put(index.ends);
-  file.put(index.checksums);
+  file.values(index);
   return file.finish();
 }
 
 RangeIndex index_of_range(const PointFiles& files, std::size_t range, const ArrayFileFacts& facts) {
   ArrayFileReader file = files.open(files.path("range", range), facts);
-  const PlainIndex plain = file.take_copy<PlainIndex>()[0];
-  RangeIndex index{
-      plain.points, plain.largest_shift_height, HeightFinder(plain.heights), {}, {}, {}, {}};
-  index.hull = file.take_copy<GridPoint>();
-  index.boxes = file.take_copy<GridBox>();
-  index.ends = file.take_copy<std::uint64_t>();
-  index.checksums = file.take_copy<std::uint64_t>();
+  RangeIndex index{0, 0.0, HeightFinder(false, 0.0), {}, {}, {}, {}};
+  file.values(index);
   return index;
 }
 

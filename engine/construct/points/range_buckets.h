@@ -21,13 +21,18 @@ namespace ptin {
 /// of all points would be.
 struct RangeIndex {
   std::uint64_t points = 0;           ///< Distinct positions.
-  double largest_shift_height = 0.0;  ///< As PlacedHeight has heights.
+  double largest_shift_height = 0.0;  ///< As GridVertex has heights.
   HeightFinder heights;
   std::vector<GridPoint> hull;           ///< Its corners.
-  std::vector<GridBox> boxes;            ///< Of the buckets.
+  std::vector<GridBox> boxes;            ///< Boxes of the buckets.
   std::vector<std::uint64_t> ends;       ///< Where each bucket ends in the file of the range.
-  std::vector<std::uint64_t> checksums;  ///< Of the buckets.
+  std::vector<std::uint64_t> checksums;  ///< Checksums of the buckets.
 };
+
+template <class File, MaybeConst<RangeIndex> Index>
+void serialize(File& file, Index& i) {
+  file.values(i.points, i.largest_shift_height, i.heights, i.hull, i.boxes, i.ends, i.checksums);
+}
 
 /// Sorts the range of the task's number of what was shared out, and writes its buckets to
 /// plan.buckets_of(), and

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/construct/lines/edges_file.h"
 #include "engine/construct/points/point_spool.h"
 
 namespace ptin {
@@ -15,45 +14,11 @@ namespace {
 constexpr std::uint64_t kWaiting = std::uint64_t{1} << 18;
 constexpr std::uint64_t kFewestWaiting = 1024, kMostWaiting = 4096;
 
-struct PlainPlan {
-  PointGrid grid;
-  std::uint64_t rule, points, shares, block_records, bucket_points, least_memory;
-};
-
 }  // namespace
 
 std::size_t SortPlan::range_of(std::uint64_t key) const noexcept {
   return static_cast<std::size_t>(std::upper_bound(splitters.begin(), splitters.end(), key) -
                                   splitters.begin());
-}
-
-void put(ArrayFileWriter& file, const SortPlan& plan) {
-  const PlainPlan plain{plan.grid,          static_cast<std::uint64_t>(plan.rule),
-                        plan.points,        plan.shares,
-                        plan.block_records, plan.bucket_points,
-                        plan.least_memory};
-  file.put(std::span(&plain, 1));
-  file.put_text(plan.buckets);
-  file.put(plan.splitters);
-  file.put(plan.spools);
-  put_edges(file, plan.fixed);
-}
-
-SortPlan take_sort_plan(ArrayFileReader& file) {
-  const PlainPlan plain = file.take<PlainPlan>()[0];
-  SortPlan plan;
-  plan.grid = plain.grid;
-  plan.rule = static_cast<PointMerge>(plain.rule);
-  plan.points = plain.points;
-  plan.shares = plain.shares;
-  plan.block_records = plain.block_records;
-  plan.bucket_points = plain.bucket_points;
-  plan.least_memory = plain.least_memory;
-  plan.buckets = file.take_text();
-  plan.splitters = file.take_copy<std::uint64_t>();
-  plan.spools = file.take_copy<PointReading::Spool>();
-  plan.fixed = take_edges(file);
-  return plan;
 }
 
 std::vector<std::uint64_t> split(std::vector<WeightedKey> keys, std::uint64_t ranges) {

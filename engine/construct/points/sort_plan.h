@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the tasks that sort a source of points are told: its grid, its lines, and how it is shared out.
+// What the tasks that sort a source of points are given: its grid, its lines, and how it is shared
+// out.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/point_order.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/lines/edges_file.h"
 #include "engine/construct/lines/fixed_edges.h"
 #include "engine/construct/points/point_reading.h"
 #include "engine/construct/scratch/array_file.h"
@@ -20,8 +22,8 @@ namespace ptin {
 
 /// Constants by which sorting is shared out. Tests choose smaller ones; results do not depend on them.
 struct SortSizes {
-  /// Points of a range of the curve: so many are sorted in memory at once. Of a large source there
-  /// are most_ranges ranges of more points each, which are sorted on disk where they have to be.
+  /// Points of a range of the curve: so many are sorted in memory at once. A large source has
+  /// most_ranges ranges of more points each, which are sorted on disk where they have to be.
   std::uint64_t range_points = std::uint64_t{1} << 17;
   std::uint64_t most_ranges = 256;
   /// Points that one task shares out among the ranges, and how many such tasks there are at most.
@@ -38,10 +40,10 @@ struct SortSizes {
 struct SortPlan {
   PointGrid grid;
   PointMerge rule = PointMerge::kMean;
-  std::uint64_t points = 0;         ///< Of all spools.
+  std::uint64_t points = 0;         ///< Points of all spools.
   std::uint64_t shares = 1;         ///< Tasks that share out.
   std::uint64_t block_records = 0;  ///< Records that are written to a range at a time.
-  std::uint64_t bucket_points = 0;  ///< Of a bucket; the last one of a range may have fewer.
+  std::uint64_t bucket_points = 0;  ///< Points of a bucket; the last one of a range may have fewer.
   std::uint64_t least_memory = 0;   ///< As SortSizes.
   std::string buckets;  ///< The path of the file of a range's buckets, but for its number.
   std::vector<std::uint64_t> splitters;  ///< Ascending.
@@ -56,9 +58,11 @@ struct SortPlan {
     return buckets + "-" + std::to_string(range);
   }
 };
-void put(ArrayFileWriter& file, const SortPlan& plan);
-/// @throws Error corruption
-[[nodiscard]] SortPlan take_sort_plan(ArrayFileReader& file);
+template <class File, MaybeConst<SortPlan> Plan>
+void serialize(File& file, Plan& p) {
+  file.values(p.grid, p.rule, p.points, p.shares, p.block_records, p.bucket_points, p.least_memory,
+              p.buckets, p.splitters, p.spools, p.fixed);
+}
 
 /// The plan of a source. It depends on the points, the lines and the sizes alone.
 [[nodiscard]] SortPlan plan_sorting(const PointReading& reading, const PointGrid& grid,

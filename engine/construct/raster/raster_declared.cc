@@ -159,8 +159,8 @@ RasterBands bands_of(GDALDataset& data, const std::string& path, bool is_overrid
            path);
   }
   // The mask of a nodata value says no more than the value, which is compared anyway, but where that is
-  // the whole dataset's (NODATA_VALUES), which no band tells. GDAL takes an alpha band for a mask only
-  // where samples are Byte or UInt16, so that band is looked at itself.
+  // the whole dataset's (NODATA_VALUES), which no band states. GDAL takes an alpha band for a mask
+  // only where samples are Byte or UInt16, so that band is looked at itself.
   const int flags = bands.height->GetMaskFlags();
   const bool is_of_value =
       (flags & GMF_NODATA) != 0 && (is_overridden || (flags & GMF_PER_DATASET) == 0);

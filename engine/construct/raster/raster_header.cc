@@ -9,6 +9,7 @@
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 
+#include "engine/construct/grid/gdal_session.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -16,13 +17,7 @@ namespace {
 
 /// The first `most` bytes of a file in small letters; "" where it cannot be read.
 std::string begin_of(const std::string& path, std::size_t most) {
-  VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-  if (file == nullptr) {
-    return {};
-  }
-  std::string text(most, '\0');
-  text.resize(VSIFReadL(text.data(), 1, text.size(), file));
-  VSIFCloseL(file);
+  std::string text = beginning_of_file(path, most).value_or("");
   std::transform(text.begin(), text.end(), text.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Lines in the headers of some formats that tell of places and heights, and that GDAL passes over.
+// Lines in the headers of some formats that speak of places and heights, and that GDAL passes over.
 #pragma once
 
 #include <string>

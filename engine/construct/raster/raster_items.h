@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Attributes of a netCDF file that tell of CRS and units, which GDAL hands on as metadata alone.
+// Attributes of a netCDF file that speak of CRS and units, which GDAL hands on as metadata alone.
 #pragma once
 
 #include <string>

@@ -68,7 +68,7 @@ class RasterMosaic {
  private:
   struct PlacedPart {
     RasterPart part;
-    std::int64_t x = 0, y = 0;    ///< Of its south-western sample, in the terrain.
+    std::int64_t x = 0, y = 0;    ///< Its south-western sample, in the terrain.
     std::uint64_t last_used = 0;  ///< `clock_` at that time.
   };
 

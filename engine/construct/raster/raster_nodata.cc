@@ -5,7 +5,8 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
+
+#include "engine/number.h"
 
 namespace ptin {
 namespace {
@@ -99,14 +100,8 @@ int significant_bits_of(GDALDataType type, const char* nbits) {
   if (type != GDT_Float32 || nbits == nullptr) {
     return 0;
   }
-  switch (std::atoi(nbits)) {
-    case 16:
-      return 11;
-    case 24:
-      return 17;
-    default:
-      return 0;
-  }
+  const int bits = parse_number<int>(nbits).value_or(0);
+  return bits == 16 ? 11 : bits == 24 ? 17 : 0;
 }
 
 }  // namespace ptin

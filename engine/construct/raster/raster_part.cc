@@ -127,8 +127,8 @@ void check_heights(const SampleRange& w, std::span<const T> values,
 
 struct RasterPart::Bands : RasterBands {
   GDALDatasetUniquePtr data;
-  std::unique_ptr<GDALDataset, CloseDataset> backed;  ///< Of a VRT, with a background.
-  GDALRasterBand* values = nullptr;                   ///< The heights, where they are read.
+  GDALDatasetUniquePtr backed;       ///< Of a VRT, with a background.
+  GDALRasterBand* values = nullptr;  ///< The heights, where they are read.
 
   void look_behind(RawType raw);
 };

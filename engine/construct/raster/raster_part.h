@@ -32,8 +32,8 @@ struct RasterShape {
   bool rows_from_south = false;    ///< The file's first row is the southernmost.
   bool columns_from_east = false;  ///< The file's first column is the easternmost.
   std::string crs;                 ///< As declared_crs() (grid/dataset_crs.h); empty when unknown.
-  std::string plane_unit;          ///< Of x and y, beside a CRS; empty when unknown.
-  std::string unit;                ///< Of heights; empty when unknown.
+  std::string plane_unit;          ///< Unit of x and y, besides the CRS; empty when unknown.
+  std::string unit;                ///< Unit of heights; empty when unknown.
   RawType raw = RawType::kInt32;
   std::string type_name;  ///< GDAL's: "Int16", "Float32" ...
   StoredType stored;

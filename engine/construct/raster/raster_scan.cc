@@ -36,11 +36,11 @@ HeightScan::Given given(RawType raw) {
 
 /// Facts of the samples of a band: a plain value, without a byte that means nothing.
 struct RasterScan::Found {
-  HeightScan::Known heights{};  ///< Heights of rasters that do not hold whole codes.
+  HeightScan heights;  ///< Heights of rasters that do not hold whole codes.
   std::int64_t low = std::numeric_limits<std::int64_t>::max();  ///< The least whole code.
   std::int64_t high = std::numeric_limits<std::int64_t>::min();
   std::uint64_t codes = 0;  ///< Their number.
-  RasterSuspects::Known suspects{};
+  RasterSuspects suspects{};
 };
 
 RasterScan::RasterScan(RasterMosaic mosaic, std::int64_t band_samples)
@@ -74,9 +74,7 @@ TaskList RasterScan::tasks() const {
 
 template <class T>
 RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const Task& task) const {
-  HeightScan heights(given(shape_.raw));
-  RasterSuspects suspects;
-  Found found;
+  Found found{.heights = HeightScan(given(shape_.raw))};
   const SampleRange whole = band(number_of(task.name));
   std::vector<T> values(
       static_cast<std::size_t>(step_.width * std::min(step_.height, whole.height)));
@@ -96,7 +94,7 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const Task& task) const
         found.codes += valid[i];
         if constexpr (!std::is_integral_v<T>) {
           if (valid[i]) {
-            heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
+            found.heights.add(shape_.offset + shape_.scale * static_cast<double>(values[i]));
           }
         }
       }
@@ -105,22 +103,18 @@ RasterScan::Found RasterScan::scan(RasterMosaic& mosaic, const Task& task) const
           found.low = std::min<std::int64_t>(found.low, low);
           found.high = std::max<std::int64_t>(found.high, high);
         }
-        suspects.add<T>(std::span(values).first(n), std::span(valid).first(n),
-                        static_cast<double>(low), static_cast<double>(high), [&](std::size_t i) {
-                          const auto column = w.x0 + static_cast<std::int64_t>(i) % w.width;
-                          const auto row =
-                              mosaic.height() - 1 - w.y0 - static_cast<std::int64_t>(i) / w.width;
-                          return static_cast<std::uint64_t>(row * mosaic.width() + column);
-                        });
+        found.suspects.add<T>(
+            std::span(values).first(n), std::span(valid).first(n), static_cast<double>(low),
+            static_cast<double>(high), [&](std::size_t i) {
+              const auto column = w.x0 + static_cast<std::int64_t>(i) % w.width;
+              const auto row = mosaic.height() - 1 - w.y0 - static_cast<std::int64_t>(i) / w.width;
+              return static_cast<std::uint64_t>(row * mosaic.width() + column);
+            });
       }
       done += n;
-      if (task.progress) {
-        task.progress(done);
-      }
+      task.tell(done);
     }
   }
-  found.heights = heights.known();
-  found.suspects = suspects.known();
   return found;
 }
 
@@ -151,19 +145,17 @@ TaskResult RasterScan::run(const Task& task) {
 }
 
 RasterScan::Joined RasterScan::join(const TaskResults& results) const {
-  HeightScan heights(given(shape_.raw));
-  RasterSuspects suspects;
-  Found all;
+  Found all{.heights = HeightScan(given(shape_.raw))};
   for (const auto& [name, result] : results) {
     const auto found = value_in_text<Found>(result.told);
-    heights.join(HeightScan(given(shape_.raw), found.heights));
-    suspects.join(found.suspects);
+    all.heights.join(found.heights);
+    all.suspects.join(found.suspects);
     all.low = std::min(all.low, found.low);
     all.high = std::max(all.high, found.high);
     all.codes += found.codes;
   }
   if (shape_.raw != RawType::kInt32) {
-    return {heights.fit(), suspects.apart()};
+    return {all.heights.fit(), all.suspects.apart()};
   }
   const HeightEncoding encoding{HeightType::int32, shape_.scale, shape_.offset};
   HeightFit fit{encoding, shape_.scale, 0.0, 0.0, -1.0, all.codes};
@@ -171,7 +163,7 @@ RasterScan::Joined RasterScan::join(const TaskResults& results) const {
     fit.min_height = encoding.height_of_code(static_cast<double>(all.low));
     fit.max_height = encoding.height_of_code(static_cast<double>(all.high));
   }
-  return {fit, suspects.apart()};
+  return {fit, all.suspects.apart()};
 }
 
 }  // namespace ptin

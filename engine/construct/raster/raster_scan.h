@@ -46,7 +46,7 @@ class RasterScan final : public TaskWorker {
 
   std::int64_t band_samples_;
   RasterMosaic mosaic_;                              ///< Never read from: tasks take duplicates.
-  RasterShape shape_;                                ///< Of its first file.
+  RasterShape shape_;                                ///< Shape of its first file.
   SampleRange step_;                                 ///< The size of what is looked at together.
   std::mutex mutex_;                                 ///< Guards the mosaics.
   std::vector<std::unique_ptr<RasterMosaic>> idle_;  ///< Duplicates that no task uses.

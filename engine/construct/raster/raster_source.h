@@ -5,15 +5,20 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/raster/raster_mosaic.h"
+#include "engine/construct/raster/raster_suspects.h"
 #include "engine/construct/scratch/array_file.h"
 #include "engine/construct/tasks/task_driver.h"
+#include "engine/construct/tile/tile_tree.h"
 
 namespace ptin {
 
@@ -64,37 +69,48 @@ class RasterSource {
                                             const SourceOptions& options, const std::string& index,
                                             const ArrayFileFacts& facts);
 
-  RasterSource(RasterSource&&) noexcept;
-  RasterSource& operator=(RasterSource&&) noexcept;
-  ~RasterSource();
-
   /// The same terrain with files of its own. Cost: opens no file before the first read(). The files
   /// of a mosaic are closed in this source too, until they are read again.
   [[nodiscard]] RasterSource duplicate() const;
 
-  [[nodiscard]] const TerrainFrame& frame() const noexcept;
-  [[nodiscard]] std::int64_t width() const noexcept;   ///< Samples in x, at least 2.
-  [[nodiscard]] std::int64_t height() const noexcept;  ///< Samples in y, at least 2.
-  [[nodiscard]] std::uint64_t valid_samples() const noexcept;
-  [[nodiscard]] std::uint64_t void_samples() const noexcept;
+  [[nodiscard]] const TerrainFrame& frame() const noexcept { return frame_; }
+  /// Samples in x and in y, at least 2.
+  [[nodiscard]] std::int64_t width() const noexcept { return mosaic_.width(); }
+  [[nodiscard]] std::int64_t height() const noexcept { return mosaic_.height(); }
+  [[nodiscard]] std::uint64_t valid_samples() const noexcept { return valid_samples_; }
+  [[nodiscard]] std::uint64_t void_samples() const noexcept {
+    return static_cast<std::uint64_t>(width()) * static_cast<std::uint64_t>(height()) -
+           valid_samples_;
+  }
   /// Warnings of what the files declare and open() found.
-  [[nodiscard]] const SourceWarnings& warnings() const noexcept;
+  [[nodiscard]] const SourceWarnings& warnings() const noexcept { return warnings_; }
 
-  /// Reads the window of `w` x `h` samples whose south-western one is (x0, y0): row-major, row 0 in
-  /// the south. `heights` is 0 where `valid` is 0. REQUIRES: the window lies inside the terrain;
-  /// the spans hold w * h.
+  /// Reads a window of samples: row-major, row 0 in the south. `heights` is 0 where `valid` is 0.
+  /// REQUIRES: the window lies inside the terrain; the spans hold window.samples().
   /// @throws Error  invalid_argument  the window or a span is not as required
   ///                io_error          a block cannot be read, or the file changed since open()
   /// Cost: linear in the window, and decoding those blocks under it that GDAL's cache does not
   /// hold. Memory beside the spans: none for one file of integers; one value of 4 or 8 bytes a
   /// sample for other types; for a mosaic besides the values of one file at a time.
-  void read(std::int64_t x0, std::int64_t y0, std::int64_t w, std::int64_t h,
-            std::span<HeightBits> heights, std::span<std::uint8_t> valid) const;
+  void read(const SampleRange& window, std::span<HeightBits> heights,
+            std::span<std::uint8_t> valid) const;
 
  private:
-  struct Impl;
-  explicit RasterSource(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit RasterSource(RasterMosaic files) : mosaic_(std::move(files)) {}
+  [[nodiscard]] static RasterSource opened(const std::vector<std::string>& paths,
+                                           const SourceOptions& options);
+  void take_unit(const std::string& declared, const std::string& path,
+                 const SourceOptions& options);
+  void take_plane_unit(const std::string& path);
+  void frame_mosaic(const std::string& path, const SourceOptions& options);
+  void check_size() const;
+  void warn_of(const std::vector<RasterSuspects::Suspect>& suspects);
+
+  TerrainFrame frame_;
+  std::uint64_t valid_samples_ = 0;
+  SourceWarnings warnings_;
+  std::unique_ptr<std::mutex> mutex_ = std::make_unique<std::mutex>();  ///< Guards the mosaic.
+  mutable RasterMosaic mosaic_;
 };
 
 }  // namespace ptin

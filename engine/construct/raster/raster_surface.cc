@@ -61,8 +61,8 @@ struct RasterSurface::Line {
   double rise;
   double enter = 0.0, leave = 1.0;
 
-  /// Of the crossings 1 .. n - 1 with a family of lines, which divide the edge into n equal parts,
-  /// first(n) .. end(n) - 1 hold all that may lie in the window, and a few more.
+  /// Crossings 1 .. n - 1 with a family of lines divide the edge into n equal parts; first(n) ..
+  /// end(n) - 1 hold all that may lie in the window, and a few more.
   [[nodiscard]] std::int64_t first(std::int64_t n) const noexcept {
     return enter <= 0.0 ? 1
                         : std::max<std::int64_t>(
@@ -88,14 +88,13 @@ struct RasterSurface::Line {
 };
 
 RasterSurface::RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
-                             std::int32_t width, std::int32_t height,
-                             const HeightEncoding& encoding, GridPoint origin)
+                             const SampleRange& window, const HeightEncoding& encoding)
     : heights_(std::move(heights)),
       flags_(std::move(valid)),
-      width_(width),
-      height_(height),
+      width_(static_cast<std::int32_t>(window.width)),
+      height_(static_cast<std::int32_t>(window.height)),
       encoding_(encoding),
-      origin_(origin) {
+      origin_{static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0)} {
   for (std::uint8_t& flags : flags_) {
     flags = flags != 0 ? kValid : 0;
   }

@@ -19,8 +19,7 @@ class RasterSurface final : public FullSurface {
  public:
   /// Keeps the samples, which are laid out as those of make_raster_tin().
   RasterSurface(std::vector<HeightBits> heights, std::vector<std::uint8_t> valid,
-                std::int32_t width, std::int32_t height, const HeightEncoding& encoding,
-                GridPoint origin);
+                const SampleRange& window, const HeightEncoding& encoding);
 
   [[nodiscard]] double largest_gap(const EdgeEnd& a, const EdgeEnd& b) const override;
   /// Without set_border(): infinite where the edge leads through the window of a raster with voids,

@@ -37,8 +37,8 @@ std::optional<std::size_t> RasterSuspects::kind_of(double value) noexcept {
 }
 
 void RasterSuspects::add_others(double low, double high) noexcept {
-  known_.low = std::min(known_.low, low);
-  known_.high = std::max(known_.high, high);
+  low_ = std::min(low_, low);
+  high_ = std::max(high_, high);
 }
 
 void RasterSuspects::add(double value, std::uint64_t place) {
@@ -47,7 +47,7 @@ void RasterSuspects::add(double value, std::uint64_t place) {
     add_others(value, value);
     return;
   }
-  Suspect& suspect = known_.kinds[*kind];
+  Suspect& suspect = kinds_[*kind];
   ++suspect.count;
   if (place < suspect.first) {
     suspect.first = place;
@@ -55,23 +55,23 @@ void RasterSuspects::add(double value, std::uint64_t place) {
   }
 }
 
-void RasterSuspects::join(const Known& other) {
-  add_others(other.low, other.high);
+void RasterSuspects::join(const RasterSuspects& other) {
+  add_others(other.low_, other.high_);
   for (std::size_t i = 0; i < kKinds; ++i) {
-    Suspect& suspect = known_.kinds[i];
-    suspect.count += other.kinds[i].count;
-    if (other.kinds[i].first < suspect.first) {
-      suspect.first = other.kinds[i].first;
-      suspect.value = other.kinds[i].value;
+    Suspect& suspect = kinds_[i];
+    suspect.count += other.kinds_[i].count;
+    if (other.kinds_[i].first < suspect.first) {
+      suspect.first = other.kinds_[i].first;
+      suspect.value = other.kinds_[i].value;
     }
   }
 }
 
 std::vector<RasterSuspects::Suspect> RasterSuspects::apart() const {
   std::vector<Suspect> all;
-  const double range = known_.high - known_.low;
-  for (const Suspect& suspect : known_.kinds) {
-    const double gap = std::max(known_.low - suspect.value, suspect.value - known_.high);
+  const double range = high_ - low_;
+  for (const Suspect& suspect : kinds_) {
+    const double gap = std::max(low_ - suspect.value, suspect.value - high_);
     if (suspect.count > 0 && (range < 0 || gap > kApart * range)) {
       all.push_back(suspect);
     }

@@ -15,7 +15,7 @@ namespace ptin {
 
 /// Looks for values that programs write where there is no height (-9999, -32768, 1e20 and their
 /// like) among stored values that count as heights. One of them is suspect where it lies apart from
-/// all other values: a depth of 9999 m lies among others.
+/// all other values: a depth of 9999 m lies among others. A plain value.
 class RasterSuspects {
  public:
   static constexpr std::size_t kKinds = 13;
@@ -24,12 +24,6 @@ class RasterSuspects {
     std::uint64_t count = 0;
     std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
     double value = 0.0;  ///< The first one's.
-  };
-  /// Plain, without a byte that means nothing.
-  struct Known {
-    std::array<Suspect, kKinds> kinds{};
-    double low = std::numeric_limits<double>::infinity();  ///< The least of all other values.
-    double high = -std::numeric_limits<double>::infinity();
   };
 
   /// Adds values of which the smallest and the largest are known: a look at each is needed only where
@@ -48,8 +42,7 @@ class RasterSuspects {
       }
     }
   }
-  void join(const Known& other);
-  [[nodiscard]] const Known& known() const noexcept { return known_; }
+  void join(const RasterSuspects& other);
   /// Those that are suspect, when all values have been seen.
   [[nodiscard]] std::vector<Suspect> apart() const;
 
@@ -59,7 +52,9 @@ class RasterSuspects {
   void add_others(double low, double high) noexcept;
   void add(double value, std::uint64_t place);
 
-  Known known_;
+  std::array<Suspect, kKinds> kinds_{};
+  double low_ = std::numeric_limits<double>::infinity();  ///< The least of all other values.
+  double high_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace ptin

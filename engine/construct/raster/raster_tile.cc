@@ -20,7 +20,7 @@ namespace {
 
 /// How far around a window the border between surface and void is looked for, so that what lies
 /// close to the window's seams knows of a border beyond. Whether the last of these samples are lone,
-/// the cells around them tell: hence one more.
+/// the cells around them decide: hence one more.
 constexpr std::int64_t kMargin = 32 + 1;
 /// Depths beyond so many samples count as infinite.
 constexpr double kFarthest = 64.0;
@@ -71,7 +71,7 @@ GridBox box_of_window(const SampleRange& window) {
           static_cast<std::int32_t>(window.y0 + window.height - 1)};
 }
 
-/// Tells of an edge on the side of a window whether the raster goes on beyond it.
+/// Whether the raster goes on beyond an edge on the side of a window.
 std::function<bool(GridPoint, GridPoint)> goes_on_beyond(const SampleRange& raster,
                                                          const SampleRange& window) {
   const GridBox all = box_of_window(raster), part = box_of_window(window);
@@ -117,14 +117,6 @@ BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSamples& samples,
   return own;
 }
 
-Tin tin_of_window(const std::vector<HeightBits>& heights, const std::vector<std::uint8_t>& valid,
-                  const SampleRange& window, const HeightEncoding& encoding) {
-  const GridBox box = box_of_window(window);
-  return make_raster_tin(heights, valid, static_cast<std::int32_t>(window.width),
-                         static_cast<std::int32_t>(window.height), encoding,
-                         {box.min_x, box.min_y});
-}
-
 /// True when some triangles are surface and some are void.
 bool has_border(const Tin& tin) {
   return std::find(tin.classes.begin(), tin.classes.end(), TriangleClass::kSurface) !=
@@ -137,7 +129,7 @@ bool has_border(const Tin& tin) {
 std::uint64_t drop_lone_samples(std::vector<std::uint8_t>& valid, const SampleRange& outer,
                                 const SampleRange& window) {
   std::uint64_t dropped = 0;
-  for (const std::uint64_t i : find_lone_samples(valid, outer.width, outer.height)) {
+  for (const std::uint64_t i : find_lone_samples(valid, outer)) {
     valid[i] = 0;
     const std::int64_t x = outer.x0 + static_cast<std::int64_t>(i) % outer.width - window.x0;
     const std::int64_t y = outer.y0 + static_cast<std::int64_t>(i) / outer.width - window.y0;
@@ -165,8 +157,7 @@ StartedTile start_raster_tile(const RasterSource& source, const SampleRange& win
   const auto n = static_cast<std::size_t>(samples.range.samples());
   samples.heights.resize(n);
   samples.valid.resize(n);
-  source.read(samples.range.x0, samples.range.y0, samples.range.width, samples.range.height,
-              samples.heights, samples.valid);
+  source.read(samples.range, samples.heights, samples.valid);
   if (samples.has_voids) {
     samples.step = largest_step(GroundMetric(source.frame()), box_of_window(samples.range));
   }
@@ -179,7 +170,8 @@ StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window
   started.lone_samples = drop_lone_samples(samples.valid, samples.range, window);
   std::optional<BorderWitnesses> witnesses;
   if (std::find(samples.valid.begin(), samples.valid.end(), 0) != samples.valid.end()) {
-    const Tin around = tin_of_window(samples.heights, samples.valid, samples.range, units.heights);
+    const Tin around =
+        make_raster_tin(samples.heights, samples.valid, samples.range, units.heights);
     if (has_border(around)) {
       witnesses = witnesses_of(around, samples, window);
     }
@@ -192,12 +184,10 @@ StartedTile start_raster_tile(RasterSamples&& samples, const SampleRange& window
   started.box = box_of_window(window);
   started.tile.units = units;
   started.tile.samples_fill_grid = true;
-  started.tile.tin = tin_of_window(heights, valid, window, units.heights);
+  started.tile.tin = make_raster_tin(heights, valid, window, units.heights);
   start_tile(started.tile, witnesses ? &*witnesses : nullptr);
-  auto full = std::make_unique<RasterSurface>(
-      std::move(heights), std::move(valid), static_cast<std::int32_t>(window.width),
-      static_cast<std::int32_t>(window.height), units.heights,
-      GridPoint{started.box.min_x, started.box.min_y});
+  auto full =
+      std::make_unique<RasterSurface>(std::move(heights), std::move(valid), window, units.heights);
   if (witnesses) {
     full->set_border(std::make_unique<PartSurface>(
         started.tile.tin, units.heights,

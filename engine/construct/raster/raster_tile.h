@@ -19,7 +19,7 @@ struct RasterSamples {
   SampleRange raster;  ///< All there are.
   SampleRange range;   ///< Those that are here: range_around() a window, or the window.
   std::vector<HeightBits> heights;  ///< Row-major, row 0 in the south.
-  std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
+  std::vector<std::uint8_t> valid;  ///< 1 for each of `heights`, 0 for a sample without one.
   bool has_voids = false;           ///< The raster has, if not these samples.
   GroundStep step;  ///< As PartOfTerrain::step; of no account where all samples have heights.
   bool keep_around = false;  ///< All of these are asked for as StartedTile::around.

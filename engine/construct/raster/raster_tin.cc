@@ -128,21 +128,19 @@ void add_vertices(Tin& tin, const Window& w, std::int32_t y, const DiagonalRow& 
   }
 }
 
-void check(const Window& w) {
+void check(const SampleRange& w, std::span<const HeightBits> heights,
+           std::span<const std::uint8_t> valid) {
   if (w.width < 2 || w.height < 2) {
     throw Error(ErrorCode::invalid_argument, "a raster TIN needs at least 2 x 2 samples");
   }
-  const std::size_t samples =
-      static_cast<std::size_t>(w.width) * static_cast<std::size_t>(w.height);
-  if (w.heights.size() != samples || w.valid.size() != samples) {
+  if (heights.size() != w.samples() || valid.size() != w.samples()) {
     throw Error(ErrorCode::invalid_argument,
                 "a raster TIN needs one height and one mask byte for each sample");
   }
-  if (!on_grid(w.origin) || w.width - 1 > kGridMax - w.origin.x ||
-      w.height - 1 > kGridMax - w.origin.y) {
+  if (w.x0 < 0 || w.y0 < 0 || w.width - 1 > kGridMax - w.x0 || w.height - 1 > kGridMax - w.y0) {
     throw Error(ErrorCode::invalid_argument, "the window reaches beyond the grid of 2^30 steps");
   }
-  if (samples > (kNone - 1) / 2) {
+  if (w.samples() > (kNone - 1) / 2) {
     throw Error(
         ErrorCode::resource_exhausted,
         "the window has more samples than one mesh in memory counts; build it in smaller tiles");
@@ -196,15 +194,19 @@ Diagonal cell_diagonal(const RasterCell& cell, GridPoint corner) noexcept {
 }
 
 Tin make_raster_tin(std::span<const HeightBits> heights, std::span<const std::uint8_t> valid,
-                    std::int32_t width, std::int32_t height, const HeightEncoding& encoding,
-                    GridPoint origin) {
-  const Window window{heights, valid, width, height, origin};
-  check(window);
-  return encoding.type == HeightType::int32 ? make<std::int32_t>(window) : make<float>(window);
+                    const SampleRange& window, const HeightEncoding& encoding) {
+  check(window, heights, valid);
+  const Window w{heights,
+                 valid,
+                 static_cast<std::int32_t>(window.width),
+                 static_cast<std::int32_t>(window.height),
+                 {static_cast<std::int32_t>(window.x0), static_cast<std::int32_t>(window.y0)}};
+  return encoding.type == HeightType::int32 ? make<std::int32_t>(w) : make<float>(w);
 }
 
 std::vector<std::uint64_t> find_lone_samples(std::span<const std::uint8_t> valid,
-                                             std::int64_t width, std::int64_t height) {
+                                             const SampleRange& window) {
+  const std::int64_t width = window.width, height = window.height;
   std::vector<std::uint64_t> lone;
   if (std::memchr(valid.data(), 0, valid.size()) == nullptr) {
     return lone;

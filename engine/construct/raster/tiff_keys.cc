@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <utility>
 #include <vector>
 
 #include <cpl_vsi.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -19,10 +19,6 @@ using TiffBytes = std::vector<unsigned char>;
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 24;
 constexpr std::uint64_t kMostTags = 4096;
-
-struct CloseFile {
-  void operator()(VSILFILE* file) const noexcept { VSIFCloseL(file); }
-};
 
 /// Reads a TIFF of either byte order.
 class TiffReader {
@@ -103,7 +99,7 @@ class TiffReader {
     return number;
   }
 
-  std::unique_ptr<VSILFILE, CloseFile> file_;
+  Handle<VSILFILE, &VSIFCloseL> file_;
   std::uint64_t directory_ = 0;  ///< Where the first directory is; 0 where there is none.
   bool is_big_ = false;          ///< BigTIFF: offsets of 64 bits.
   bool is_turned_ = false;       ///< The greatest byte of a number comes first.

@@ -2,13 +2,11 @@
 #include "engine/construct/raster/vrt_background.h"
 
 #include <algorithm>
-#include <memory>
 #include <vector>
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
 #include <cpl_string.h>
-#include <gdal_priv.h>
 
 namespace ptin {
 namespace {
@@ -17,11 +15,6 @@ namespace {
 constexpr int kDeepest = 8;
 
 constexpr const char* kNan = "nan";
-
-struct FreeXml {
-  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
-};
-using Xml = std::unique_ptr<CPLXMLNode, FreeXml>;
 
 bool is_vrt(GDALDataset& data) {
   return data.GetDriver() != nullptr && EQUAL(data.GetDriverName(), "VRT");
@@ -110,7 +103,7 @@ bool has_sources(const CPLXMLNode* band) {
   return EQUAL(CPLGetXMLValue(band, "subClass", "VRTSourcedRasterBand"), "VRTSourcedRasterBand");
 }
 
-/// Adds an alpha band to a VRT that warps. False where it tells otherwise what it covers.
+/// Adds an alpha band to a VRT that warps. False where it states otherwise what it covers.
 bool add_alpha(CPLXMLNode* root) {
   CPLXMLNode* const options = CPLGetXMLNode(root, "GDALWarpOptions");
   if (options == nullptr || CPLGetXMLNode(options, "DstAlphaBand") != nullptr) {
@@ -140,7 +133,7 @@ std::string with_background(GDALDataset& data, const std::string& background, in
   if (depth > kDeepest || xml == nullptr || xml[0] == nullptr) {
     return {};
   }
-  const Xml parsed(CPLParseXMLString(xml[0]));
+  const CPLXMLTreeCloser parsed(CPLParseXMLString(xml[0]));
   CPLXMLNode* const root = CPLGetXMLNode(parsed.get(), "=VRTDataset");
   if (root == nullptr) {
     return {};
@@ -172,16 +165,13 @@ std::string with_background(GDALDataset& data, const std::string& background, in
 
 }  // namespace
 
-void CloseDataset::operator()(GDALDataset* data) const noexcept { GDALClose(data); }
-
-std::unique_ptr<GDALDataset, CloseDataset> open_with_background(GDALDataset& data,
-                                                                const std::string& background) {
+GDALDatasetUniquePtr open_with_background(GDALDataset& data, const std::string& background) {
   const std::string text = is_vrt(data) ? with_background(data, background, 0) : "";
   if (text.empty()) {
     return nullptr;
   }
   static constexpr const char* kDrivers[] = {"VRT", nullptr};
-  return std::unique_ptr<GDALDataset, CloseDataset>(
+  return GDALDatasetUniquePtr(
       GDALDataset::Open(text.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kDrivers));
 }
 

@@ -4,16 +4,11 @@
 // band covers a sample, which nobody can tell from a height.
 #pragma once
 
-#include <memory>
 #include <string>
 
-class GDALDataset;
+#include <gdal_priv.h>
 
 namespace ptin {
-
-struct CloseDataset {
-  void operator()(GDALDataset* data) const noexcept;
-};
 
 /// A VRT opened once more, whose bands read as `background` where no source covers a sample: beyond
 /// their rectangles, and where they have none of their own values (NODATA, UseMaskBand). VRTs that it
@@ -23,7 +18,7 @@ struct CloseDataset {
 /// @param background  A value that fits the type in which the bands will be read, and that no sample
 ///                    has: NaN, or a number.
 /// Cost: parses the VRTs, and opens those in it.
-[[nodiscard]] std::unique_ptr<GDALDataset, CloseDataset> open_with_background(
-    GDALDataset& data, const std::string& background);
+[[nodiscard]] GDALDatasetUniquePtr open_with_background(GDALDataset& data,
+                                                        const std::string& background);
 
 }  // namespace ptin

@@ -6,11 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/handle.h"
 
 namespace ptin {
 
@@ -40,16 +41,13 @@ class ByteReader {
   static constexpr std::size_t kLongest = std::size_t{64} << 10;
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Of the whole file.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< Bytes of the whole file.
   /// Bytes handed out so far.
   [[nodiscard]] std::uint64_t position() const noexcept { return position_; }
   /// "path:line" of the last line handed out, for errors.
   [[nodiscard]] std::string place() const { return path_ + ":" + std::to_string(line_); }
 
  private:
-  struct Closer {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-  };
   /// Makes at least `count` bytes available where the file has them.
   void want(std::size_t count);
   void take(std::size_t count) noexcept {
@@ -58,7 +56,7 @@ class ByteReader {
   }
 
   std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  Handle<std::FILE, &std::fclose> file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< The bytes of buffer_ still to be handed out.
   std::uint64_t size_ = 0, position_ = 0, line_ = 0;

@@ -20,23 +20,23 @@ struct ColumnRole {
   int end = 0;  ///< 1 or 2: of the first or second end; 0: of a point.
 };
 
-/// How a role is told: "x", "y", "z", of ends "x1", "h1", "y2".
+/// How a role is named: "x", "y", "z", of ends "x1", "h1", "y2".
 [[nodiscard]] std::string name_of(ColumnRole role);
 
-/// Which of the names tells a role. These are known, in any case; where several of them are there,
-/// the one that stands first here decides:
+/// Which of the names stands for a role. These are known, in any case; where several of them are
+/// there, the one that stands first here decides:
 ///   x: x, easting, eastings, east, e, longitude, lon, long, lng, point_x, x_coord, xcoord
 ///   y: y, northing, northings, north, n, latitude, lat, point_y, y_coord, ycoord
 ///   z: z, height, h, elevation, elev, ele, altitude, alt, point_z, z_coord, zcoord
 /// Those of an end have its number behind them, as x1, lat_2. A unit may follow (named_column());
 /// names without one come first.
-/// @return  An index into `names`; names.size() where none of them tells the role.
+/// @return  An index into `names`; names.size() where none of them stands for the role.
 [[nodiscard]] std::size_t find_column(std::span<const std::string> names, ColumnRole role);
 
-/// A name and the unit that it tells of its column.
+/// A name and the unit that it gives for its column.
 struct NamedColumn {
   std::string_view name;
-  std::string_view unit;  ///< Empty where it tells none.
+  std::string_view unit;  ///< Empty where it gives none.
 };
 /// Takes the unit off a name: what stands in brackets behind it, as in "z [ft]" and "z(m)", or a
 /// known unit behind a line, as in "z_ft".
@@ -49,7 +49,7 @@ struct NamedColumn {
 [[nodiscard]] bool is_coordinate_name(std::string_view name);
 
 /// The columns of the roles among `names`, which the caller gave (`build --columns`).
-/// @throws Error  invalid_argument  they tell a role twice, or not at all
+/// @throws Error  invalid_argument  they name a role twice, or not at all
 [[nodiscard]] std::vector<std::size_t> columns_of(std::span<const std::string> names,
                                                   std::span<const ColumnRole> roles);
 

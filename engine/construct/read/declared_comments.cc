@@ -53,7 +53,7 @@ bool has_any(const std::vector<std::string>& words, Names names) {
                      [&](const std::string& word) { return holds(names, word); });
 }
 
-/// A subject that a comment may be about; each is told by the words before its value.
+/// A subject that a comment may be about; each is known by the words before its value.
 enum class Subject { kNone, kCrs, kVerticalCrs, kUnit, kNodata, kOther };
 
 constexpr std::array<std::string_view, 20> kCrsNames = {"crs",
@@ -99,7 +99,7 @@ constexpr std::array<std::string_view, 14> kOtherNames = {"datum",          "hor
                                                           "utm zone",       "hemisphere",
                                                           "up axis",        "up",
                                                           "axis up",        "axis order"};
-/// And where one of these words and a number stand anywhere, it is told.
+/// And where one of these words and a number stand anywhere, it is reported.
 constexpr std::array<std::string_view, 17> kTelling = {
     "shift",       "shifted",    "offset", "offsets", "origin", "translate",
     "translation", "translated", "scale",  "scaled",  "rotate", "rotation",
@@ -258,7 +258,7 @@ bool is_geographic_or_in(const std::string& text, const std::string& unit) {
     const Crs crs = resolve_crs(text, "", "");
     return crs.geographic || height_unit_named(crs.horizontal_unit) == unit;
   } catch (const Error&) {
-    return true;  // Whoever uses the CRS tells what is wrong with it.
+    return true;  // Whoever uses the CRS says what is wrong with it.
   }
 }
 
@@ -292,7 +292,7 @@ bool DeclaredComments::take_crs(std::string_view key, std::string_view value, bo
     set(vertical_crs_, crs);
     return true;
   }
-  // Names that stand for nothing but a CRS have one behind them, or a text that is to be told of.
+  // Names that stand for nothing but a CRS have one behind them, or a text that is to be reported.
   const bool is_sure = key == "crs" || key == "srs" || key == "vertical crs" || key == "epsg";
   if (is_sure && crs.empty() && codes_in(value).empty()) {
     set(is_vertical ? vertical_crs_ : crs_, std::string(value));

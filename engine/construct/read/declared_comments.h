@@ -20,9 +20,9 @@ namespace ptin {
 ///   - units: `units: ft`, `File units = feet`, `unit m`; of heights alone `z units: ft` or
 ///     `height_units: ft`, which goes before the others;
 ///   - a value that means no height: `nodata -9999`.
-/// All else that tells of a CRS, a datum, a unit, an axis, a shift, a scale or a rotation is kept to be
-/// warned of, as are two declarations that contradict each other. What says that there is none ("scale:
-/// 1", "offset 0 0 0", "crs: unknown") is passed over. Not thread-safe.
+/// All else that speaks of a CRS, a datum, a unit, an axis, a shift, a scale or a rotation is kept
+/// to be warned of, as are two declarations that contradict each other. What says that there is
+/// none ("scale: 1", "offset 0 0 0", "crs: unknown") is passed over. Not thread-safe.
 class DeclaredComments {
  public:
   /// @param comment  Without its mark.

@@ -8,12 +8,13 @@
 namespace ptin {
 
 /// The unit of a DXF's coordinates by $INSUNITS of its header, as height_unit_named() has it; "" where
-/// the file tells none, or one that is not known.
+/// the file states none, or one that is not known.
 /// @throws Error  not_found, io_error
 /// Cost: reads the header, some hundred lines.
 [[nodiscard]] std::string unit_of_dxf(const std::string& path);
 
-/// True where the objects of a DXF tell a CRS (GEODATA), which OGR does not read. False for a binary one.
+/// True where the objects of a DXF state a CRS (GEODATA), which OGR does not read. False for a
+/// binary one.
 /// @throws Error not_found, io_error
 /// Cost: reads the file.
 [[nodiscard]] bool has_geodata(const std::string& path);

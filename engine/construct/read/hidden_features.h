@@ -10,7 +10,7 @@ class OGRLayer;
 
 namespace ptin {
 
-/// Knows them by what OGR tells of two formats. DXF: entities in paper space, which are in units of
+/// Knows them by what OGR says of two formats. DXF: entities in paper space, which are in units of
 /// the sheet, and those that are invisible themselves or lie on a layer that is off or frozen. KML:
 /// `visibility` 0.
 class HiddenFeatures {

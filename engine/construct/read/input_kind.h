@@ -17,17 +17,17 @@ enum class InputKind : std::uint8_t { kRaster, kPoints, kTin };
 /// The formats that points come in. A TIN is read as points where only its vertices are wanted.
 enum class PointFormat : std::uint8_t { kLas, kText, kTin, kLayer };
 
-/// The kind that a file's name alone tells, in any case of letters. Names of points end in .las,
+/// The kind that a file's name alone shows, in any case of letters. Names of points end in .las,
 /// .laz, or .csv, .xyz, .txt, .tsv, these four also followed by .gz; names of TINs end in .ply,
-/// .obj, .2dm, .xml, .landxml. No other name tells a kind. No file is opened.
+/// .obj, .2dm, .xml, .landxml. No other name shows a kind. No file is opened.
 [[nodiscard]] std::optional<InputKind> kind_by_name(const std::string& path);
 
 /// True when a name ends in .gz, in any case: the text in the file is unpacked while it is read.
 [[nodiscard]] bool is_packed(const std::string& path);
 
-/// The kind of an input. Its name decides where it tells a kind. Otherwise an input is points when
+/// The kind of an input. Its name decides where it shows a kind. Otherwise an input is points when
 /// `choice` names a layer or an attribute, or when OGR finds a layer in the file and GDAL finds no
-/// raster; else it is a raster. Cost: opens the file where neither name nor choice tells.
+/// raster; else it is a raster. Cost: opens the file where neither name nor choice decides.
 [[nodiscard]] InputKind kind_of_input(const std::string& path, const PointChoice& choice);
 
 /// True when the caller wants a layer of OGR's or one of its attributes, whatever the name says.

@@ -40,8 +40,6 @@ bool is_surface_named(const std::string& wish, std::string_view name, std::uint6
   return wish.empty() || name == wish || wish == "#" + std::to_string(number);
 }
 
-void LandXmlElements::ParserFree::operator()(XML_ParserStruct* p) const { XML_ParserFree(p); }
-
 LandXmlElements::LandXmlElements(ByteReader& in) : in_(in), parser_(XML_ParserCreate(nullptr)) {
   if (!parser_) {
     throw Error(ErrorCode::resource_exhausted, "no memory for a parser", in.path());

@@ -5,27 +5,27 @@
 
 #include <cstdint>
 #include <exception>
-#include <memory>
 #include <string>
 #include <string_view>
+
+#include <expat.h>
 
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/byte_reader.h"
-
-struct XML_ParserStruct;
+#include "engine/handle.h"
 
 namespace ptin {
 
 /// A surface that a caller names, among those of a file: by its name, or by its place in the file as
 /// "#2", since several may have one name.
-/// @param number  Of the surface, from 1.
+/// @param number  Number of the surface, from 1.
 [[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
                                     std::uint64_t number);
 
-/// Reads LandXML as a stream, in any encoding that it names, and tells a derived class of its elements. A document type declaration
-/// is refused, and with it every entity that a file could define. Errors are kept and thrown outside
-/// of expat, which is C.
+/// Reads LandXML as a stream, in any encoding that it names, and hands its elements to a derived
+/// class. A document type declaration is refused, and with it every entity that a file could
+/// define. Errors are kept and thrown outside of expat, which is C.
 class LandXmlElements {
  public:
   LandXmlElements(const LandXmlElements&) = delete;
@@ -71,10 +71,7 @@ class LandXmlElements {
   void read_crs(const char** attributes);
   void read_units(const char** attributes);
 
-  struct ParserFree {
-    void operator()(XML_ParserStruct* p) const;
-  };
-  std::unique_ptr<XML_ParserStruct, ParserFree> parser_;
+  Handle<XML_ParserStruct, &XML_ParserFree> parser_;
   std::exception_ptr failure_;
   int depth_ = 0;
   bool gathering_ = false;

@@ -19,7 +19,7 @@ constexpr std::size_t kLongestList = std::size_t{16} << 20;  // bytes of text
 
 class LandXmlLines final : public LandXmlElements {
  public:
-  LandXmlLines(ByteReader& in, const LineWish& wish, const TakeLine& take,
+  LandXmlLines(ByteReader& in, const LayerWish& wish, const TakeLine& take,
                const std::stop_token& stop)
       : LandXmlElements(in),
         wish_(wish),
@@ -31,7 +31,7 @@ class LandXmlLines final : public LandXmlElements {
     parse();
     if (lines_ == 0) {
       refuse(std::string("there is no ") + element_ + " with a PntList3D or PntList2D in " +
-                 (wish_.layer.empty() ? "this file" : "the surface '" + wish_.layer + "'") +
+                 (wish_.name.empty() ? "this file" : "the surface '" + wish_.name + "'") +
                  (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
              in_.path());
     }
@@ -52,7 +52,7 @@ class LandXmlLines final : public LandXmlElements {
       if (surfaces_.size() < kMostNames) {
         surfaces_ += (surfaces_.empty() ? "'" : ", '") + surface.substr(0, 60) + "'";
       }
-      is_wanted_ = is_surface_named(wish_.layer, surface, ++number_);
+      is_wanted_ = is_surface_named(wish_.name, surface, ++number_);
       lines_of_surface_ = 0;
     } else if (name == element_) {
       in_line_ = is_wanted_;
@@ -128,7 +128,7 @@ class LandXmlLines final : public LandXmlElements {
 
   [[nodiscard]] bool wants_areas() const { return wish_.kind == LayerKind::kAreas; }
 
-  const LineWish& wish_;
+  const LayerWish& wish_;
   const char* element_;
   const TakeLine& take_;
   std::stop_token stop_;
@@ -145,8 +145,8 @@ class LandXmlLines final : public LandXmlElements {
 
 }  // namespace
 
-LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish, const TakeLine& take,
-                                const std::stop_token& stop) {
+LineFileCrs read_land_xml_lines(const std::string& path, const LayerWish& wish,
+                                const TakeLine& take, const std::stop_token& stop) {
   ByteReader in(path);
   return LandXmlLines(in, wish, take, stop).read();
 }

@@ -8,7 +8,7 @@
 namespace ptin {
 
 /// As read_line_file(), of LandXML.
-[[nodiscard]] LineFileCrs read_land_xml_lines(const std::string& path, const LineWish& wish,
+[[nodiscard]] LineFileCrs read_land_xml_lines(const std::string& path, const LayerWish& wish,
                                               const TakeLine& take, const std::stop_token& stop);
 
 }  // namespace ptin

@@ -11,7 +11,7 @@ namespace ptin {
 /// The CRS that the records declare: as WKT where the header says so or there are no GeoTIFF keys, else
 /// that of the keys. Where this is not understood, or says nothing of heights, the other one counts.
 /// The last text that is understood counts. Text that GDAL does not understand is handed
-/// on where there is nothing else, and told when the CRS is resolved.
+/// on where there is nothing else, and reported when the CRS is resolved.
 /// @param is_wkt  The header says that the CRS is WKT.
 /// Cost: some milliseconds.
 [[nodiscard]] DeclaredCrs crs_of_records(const LasRecords& records, bool is_wkt);

@@ -22,10 +22,6 @@ constexpr int kMostScaleDecimals = 9;
 
 }  // namespace
 
-struct LasReader::File : LasFile {
-  using LasFile::LasFile;
-};
-
 /// Steps become decimals exactly where the scale is a short decimal and the offset has no more
 /// digits after the point than the scale.
 LasReader::Axis LasReader::make_axis(std::size_t i, bool powers_of_ten_only) const {
@@ -75,7 +71,7 @@ void LasReader::set_lattice() {
 
 LasReader::LasReader(std::string path, const PointChoice& choice, const PointPart& part)
     : path_(std::move(path)), returns_(choice.returns) {
-  file_ = std::make_unique<File>(path_);
+  file_ = std::make_unique<LasFile>(path_);
   header_ = read_las_header(*file_);
   read_ = begin_ = std::min(part.begin, header_.points);
   end_ = std::clamp(part.end, begin_, header_.points);

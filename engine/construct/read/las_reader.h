@@ -20,6 +20,8 @@
 
 namespace ptin {
 
+class LasFile;
+
 /// What a LAS header says, checked against the file's size.
 struct LasHeader {
   int minor_version = 0;
@@ -69,7 +71,6 @@ class LasReader final : public PointStream {
   [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
 
  private:
-  struct File;
   /// How the steps of one coordinate become a decimal.
   struct Axis {
     /// True: the mantissa is steps * scale + offset. False: the double steps * real_scale +
@@ -92,7 +93,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] std::optional<LeftOutReason> why_unwanted(const unsigned char* record) const;
 
   std::string path_;
-  std::unique_ptr<File> file_;
+  std::unique_ptr<LasFile> file_;
   LasHeader header_;
   PointStreamFacts facts_;
   SourceWarnings warnings_;

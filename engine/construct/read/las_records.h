@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The variable length records of a LAS file, before and behind its points: those that tell its CRS.
+// The variable length records of a LAS file, before and behind its points: those that state its
+// CRS.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace ptin {
 
-/// The records of a LAS file that tell its CRS.
+/// The records of a LAS file that state its CRS.
 struct LasRecords {
   /// The texts that are not empty, in the order of the file; those that the library libLAS wrote under
   /// its own name where there are no others.

@@ -95,7 +95,8 @@ OGRLayer& choose_layer(GDALDataset& data, const LayerWish& wish, const std::stri
     }
   }
   if (filled.size() > 1) {
-    refuse("there are several layers of " + words + ", " + layers_in(filled) + "; " + wish.advice);
+    refuse("there are several layers of " + words + ", " + layers_in(filled) + "; name one with " +
+           wish.option);
   }
   return filled.empty() ? *fitting[0] : *filled[0];
 }

@@ -13,7 +13,7 @@ namespace ptin {
 
 namespace {
 
-/// The unit of depths that the header of a chart tells (S-57, DSPM_DUNI); "" where it is silent.
+/// The unit of depths that the header of a chart states (S-57, DSPM_DUNI); "" where it is silent.
 std::string unit_of_depths(GDALDataset& data) {
   constexpr std::array<const char*, 5> kUnitsOfDepths = {"", "metres", "fathoms and feet", "feet",
                                                          "fathoms and fractions"};

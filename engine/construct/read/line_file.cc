@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <string_view>
 #include <utility>
 
 #include <cpl_vsi.h>
@@ -15,6 +14,7 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/hidden_features.h"
 #include "engine/construct/read/land_xml_lines.h"
+#include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 
@@ -39,7 +39,7 @@ GDALDatasetUniquePtr open_vector(const std::string& path, const GdalSession& ses
 /// Takes the lines of one feature after the other.
 class LineFeatures {
  public:
-  LineFeatures(const std::string& path, const LineWish& wish, const TakeLine& take)
+  LineFeatures(const std::string& path, const LayerWish& wish, const TakeLine& take)
       : path_(path), wants_areas_(wish.kind == LayerKind::kAreas), take_(take) {}
 
   void add(const OGRFeature& feature) {
@@ -116,23 +116,15 @@ class LineFeatures {
 
 }  // namespace
 
-bool is_land_xml(const std::string& path) {
-  const auto ends_in = [&](std::string_view end) {
-    return path.size() >= end.size() && EQUAL(path.c_str() + path.size() - end.size(), end.data());
-  };
-  return ends_in(".xml") || ends_in(".landxml");
-}
-
-LineFileCrs read_line_file(const std::string& path, const LineWish& wish, const TakeLine& take,
+LineFileCrs read_line_file(const std::string& path, const LayerWish& wish, const TakeLine& take,
                            const std::stop_token& stop) {
-  if (is_land_xml(path)) {
+  if (may_have_surfaces(path)) {
     return read_land_xml_lines(path, wish, take, stop);
   }
   const GdalSession session;
   const ReportedVerticalParts vertical;
   const GDALDatasetUniquePtr data = open_vector(path, session);
-  OGRLayer& layer =
-      choose_layer(*data, {wish.kind, wish.layer, "name one with " + wish.option}, path);
+  OGRLayer& layer = choose_layer(*data, wish, path);
   LineFileCrs crs;
   crs.crs = declared_crs(*data, layer.GetSpatialRef(), session, path, crs.warnings);
   if (!crs.crs.empty() && !is_crs(crs.crs)) {

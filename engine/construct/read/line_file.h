@@ -14,13 +14,6 @@
 
 namespace ptin {
 
-/// What is wanted from a file of lines.
-struct LineWish {
-  LayerKind kind = LayerKind::kLines;  ///< kLines, or kAreas for the rings of polygons.
-  std::string layer;   ///< The layer of OGR, the surface of LandXML; "" where only one fits.
-  std::string option;  ///< That names a layer, for messages.
-};
-
 /// What a file of lines declares.
 struct LineFileCrs {
   std::string crs;       ///< As PointStreamFacts::crs.
@@ -32,18 +25,15 @@ struct LineFileCrs {
 /// Takes a line. @param has_heights  False: the z of its vertices means nothing.
 using TakeLine = std::function<void(const std::vector<SourcePoint>& line, bool has_heights)>;
 
-/// True where the name tells LandXML: .xml or .landxml, in any case.
-[[nodiscard]] bool is_land_xml(const std::string& path);
-
-/// Hands every line, or every ring of every polygon, to `take`, in the order of the file. A ring ends
+/// Hands every line, or of LayerKind::kAreas every ring of every polygon, to `take`, in the order of the file. A ring ends
 /// with the vertex that it begins with. Features without a geometry are passed over, and so are hidden
-/// ones (read/hidden_features.h). Of LandXML these are the Breaklines and the Boundaries of a surface's
-/// SourceData, with northing before easting; of other files what OGR reads.
+/// ones (read/hidden_features.h). From LandXML come the Breaklines and the Boundaries of a
+/// surface's SourceData, with northing before easting; from other files what OGR reads.
 /// @throws Error  not_found, io_error, cancelled
 ///                invalid_argument  not a vector file; no layer fits, or several do; a feature is
 ///                                  no line (no polygon), has curves, or
 ///                                  a number that is not finite; there is no line at all
-[[nodiscard]] LineFileCrs read_line_file(const std::string& path, const LineWish& wish,
+[[nodiscard]] LineFileCrs read_line_file(const std::string& path, const LayerWish& wish,
                                          const TakeLine& take, const std::stop_token& stop);
 
 }  // namespace ptin

@@ -49,7 +49,7 @@ class ObjReader {
   }
 
  private:
-  /// The next line with those that it goes on in; `place_` tells where it begins.
+  /// The next line with those that it goes on in; `place_` says where it begins.
   bool next(std::string_view& line) {
     if (!in_.line(line)) {
       return false;

@@ -61,7 +61,7 @@ struct OgrPoints::Layer {
   GDALDatasetUniquePtr data;
   OGRLayer* layer = nullptr;
   int z_field = -1;
-  int altitude_mode = -1;  ///< The attribute in which KML tells what its heights are above.
+  int altitude_mode = -1;  ///< The attribute in which KML says what its heights are above.
   std::optional<HiddenFeatures> hidden;
 
   std::string crs;

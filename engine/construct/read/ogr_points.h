@@ -15,11 +15,11 @@
 namespace ptin {
 
 /// The points (and multipoints) of one layer as a stream. The height is the geometry's z, or the
-/// number in the attribute PointChoice::z_field, whose name may tell its unit
+/// number in the attribute PointChoice::z_field, whose name may give its unit
 /// (read/column_names.h). Left out are features without a geometry, hidden ones
 /// (read/hidden_features.h), features in which a chosen attribute is not set, and heights below -10^38,
-/// by which a shapefile says that it has none. Of DXF
-/// the unit is $INSUNITS, but inches, which are warned of; so are altitude modes of KML other than
+/// by which a shapefile says that it has none. The unit
+/// of DXF is $INSUNITS, but inches, which are warned of; so are altitude modes of KML other than
 /// absolute, and further geometries of a feature. Coordinates are taken as the shortest decimals that
 /// read back as the same doubles, so that a layer gives the same terrain as the text that it was made
 /// of.

@@ -20,12 +20,19 @@ namespace ptin {
 
 struct ExternalMemory;
 
-/// What a stream may use while it is opened. Only the vertices of a TIN need it: they are sorted on
-/// disk before the first of them comes (tin/tin_vertices.h).
+/// Called for a row of a text that is no point and is passed over: its line, from 1, and what is
+/// wrong with it.
+using TakeInvalidRow = std::function<void(std::uint64_t line, const std::string& fault)>;
+
+/// What a stream may use. Memory, stop and progress are for opening the vertices of a TIN alone: they
+/// are sorted on disk before the first of them comes (tin/tin_vertices.h).
 struct StreamResources {
   const ExternalMemory* memory = nullptr;  ///< Not owned; null: the stream chooses.
   std::stop_token stop;
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< May be empty.
+  /// Text: rows that are no points are passed over, whatever PointChoice says, and reported here;
+  /// empty: PointChoice decides.
+  TakeInvalidRow invalid_row{};
 };
 
 /// One input file as a stream of points. Not thread-safe. The file stays open as long as the stream
@@ -48,11 +55,11 @@ class PointStream {
   /// Points left out so far: by the PointChoice, or by the file itself, which marks them as
   /// withheld or gives them no height.
   [[nodiscard]] virtual LeftOutPoints left_out() const noexcept { return {}; }
-  /// Of a part of a text, when it has been read to its end: what tells whether the text is one of
-  /// points. Other streams have nothing to tell.
+  /// What the rows of a part of a text say of whether the text is one of points, once the part has
+  /// been read to its end. None from other streams.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
-  /// Warnings so far. Each part of a file tells those of what lies in it, and those that
-  /// are about the file as a whole (SourceWarning::count is 0) may be told by every part.
+  /// Warnings so far. Each part of a file reports those of what lies in it, and those that
+  /// are about the file as a whole (SourceWarning::count is 0) may come from every part.
   [[nodiscard]] virtual SourceWarnings warnings() const { return {}; }
   /// Progress so far, in a unit of the stream's own: points, features or bytes.
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The encoding of a text, as its first bytes tell: UTF-8 and what contains ASCII are read.
+// The encoding of a text, as its first bytes show: UTF-8 and what contains ASCII are read.
 #pragma once
 
 #include <cstddef>

@@ -39,7 +39,7 @@ inline constexpr std::string_view kBlanks = " \t\r\n\f\v\x1a";
 /// @param line  Without blanks before it.
 [[nodiscard]] std::size_t comment_mark(std::string_view line);
 
-/// True for the line by which Excel is told the separator: "sep=;". The lines below tell it, too.
+/// True for the line that gives Excel the separator: "sep=;". The lines below show it, too.
 [[nodiscard]] bool tells_separator(std::string_view line);
 
 /// Joins a unit in brackets to the name before it, where a blank between them made it a field of its
@@ -50,12 +50,12 @@ void join_units(std::vector<std::string>& names);
 /// a column for x and one for y.
 [[nodiscard]] bool is_header(std::span<const std::string> names);
 
-/// The names of the columns, where a comment before the first row tells them: the last one that
+/// The names of the columns, where a comment before the first row gives them: the last one that
 /// names columns for x and y, from the left, and no more columns than there are. Words behind the
 /// names of x, y and z of all columns are taken for a remark.
 /// @param comments  The lines before the first row, with their marks.
-/// @param count     Of the columns.
-/// @return  So many names, those that are not told empty; none where no comment tells any.
+/// @param count     Number of the columns.
+/// @return  So many names, those that are not given empty; none where no comment gives any.
 [[nodiscard]] std::optional<std::vector<std::string>> header_in_comments(
     std::span<const std::string> comments, std::size_t count);
 

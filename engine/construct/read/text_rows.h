@@ -42,8 +42,8 @@ class TextRows {
   /// @throws Error  invalid_argument  no column has this name; also as next()
   [[nodiscard]] bool choose_id(const std::string& name);
 
-  /// The units that the names of the columns tell of x and y, and of z, as in "x[m]" and "z_ft"; also
-  /// "degree". Reads the first row.
+  /// The units that the names of the columns give for x and y, and of z, as in "x[m]" and "z_ft";
+  /// also "degree". Reads the first row.
   /// @throws Error as next(); invalid_argument  those of x and y differ
   [[nodiscard]] DeclaredUnits units();
   /// The unit in brackets in the name of a coordinate's column, where nobody knows it; else "".

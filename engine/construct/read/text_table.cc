@@ -34,7 +34,7 @@ struct TextTable::File {
   VSILFILE* handle = nullptr;
   std::istream* stream = nullptr;
   bool packed = false;
-  bool on_disk = false;  ///< A file of the system's, whose faults GDAL does not always tell.
+  bool on_disk = false;  ///< A file of the system's, whose faults GDAL does not always report.
   ~File() {
     if (handle != nullptr) {
       const GdalSession session;

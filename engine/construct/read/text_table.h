@@ -44,7 +44,7 @@ class TextTable {
   ///                invalid_argument     it is a folder, or is_packed() and has no byte
   explicit TextTable(std::string path) : TextTable(std::move(path), PointPart{}) {}
   /// Reads a part of a text that is_packed() not: its rows, by the separator and the header of the
-  /// whole. Lines are told by their number in the whole.
+  /// whole. Lines are named by their number in the whole.
   /// @throws Error  QuotesInPart, also from next() and refuse()
   TextTable(std::string path, const PointPart& part);
   /// Reads `text`, which it keeps; `name` stands for the path in errors.
@@ -86,7 +86,7 @@ class TextTable {
   /// The fields of the row that was read last, without quotes and the blanks around them. Valid
   /// until the next row is read.
   [[nodiscard]] std::span<const std::string_view> fields() const noexcept { return fields_; }
-  /// Of the first line: what each row has.
+  /// Fields of the first line, and so of each row.
   [[nodiscard]] std::size_t field_count() const noexcept { return field_count_; }
 
   /// True for a whole text, and for a part that has its first row.
@@ -128,7 +128,7 @@ class TextTable {
   std::unique_ptr<File> file_;
   std::string buffer_;
   std::size_t begin_ = 0;      ///< Where the row begins in buffer_.
-  std::size_t row_bytes_ = 0;  ///< Of the row, with its line ends.
+  std::size_t row_bytes_ = 0;  ///< Bytes of the row, with its line ends.
   std::string_view row_;       ///< Without the last line end.
   bool at_end_ = false;
   std::uint64_t line_ = 0;        ///< Lines read so far.

@@ -9,8 +9,8 @@
 namespace ptin {
 
 /// How many vertices a file of triangles has, or an estimate. A file with fewer than 65536 vertices
-/// and triangles in all is read to its end and counted. Of a longer one the header of a PLY is
-/// believed; of other formats the number is estimated from the file's size and the bytes that the
+/// and triangles in all is read to its end and counted. For a longer one the header of a PLY is
+/// believed; in other formats the number is estimated from the file's size and the bytes that the
 /// first vertices and triangles take, with two triangles to a vertex.
 /// @param surface  As TinReading::surface.
 /// @throws Error as read_tin_file(), for what is read

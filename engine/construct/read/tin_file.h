@@ -48,7 +48,7 @@ struct TinFileFacts {
   SourceWarnings warnings;
 };
 
-/// What a reader is told: which surface to read, when to stop, and to whom to report.
+/// What a reader is given: which surface to read, when to stop, and to whom to report.
 struct TinReading {
   std::string surface;  ///< LandXML: the surface's name; "" where there is only one.
   std::stop_token stop;
@@ -60,7 +60,7 @@ struct TinReading {
 /// True when a name is that of a format whose files may hold several surfaces with names: LandXML.
 [[nodiscard]] bool may_have_surfaces(std::string_view path);
 
-/// Reads a TIN in the format that the extension of its name tells. At least one vertex and one
+/// Reads a TIN in the format that the extension of its name shows. At least one vertex and one
 /// face are handed out, else it is an error.
 /// @throws Error  not_found, io_error
 ///                invalid_argument    not what the format says, or cut short: the context names the

@@ -50,7 +50,7 @@ class TinReceiver {
     sink_.add_vertex(id, p);
   }
   /// A face. A quad one of whose sides ends where it begins is the triangle of the others.
-  /// @param ids    Of the corners: numbers from 0 where vertices are numbered, else their own ids.
+  /// @param ids    Numbers of the corners from 0 where vertices are numbered, else their ids.
   /// @param place  The context of errors.
   /// @throws Error invalid_argument  it has not three or four corners
   void add_face(std::span<const std::int64_t> ids, const std::string& place);

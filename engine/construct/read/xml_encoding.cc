@@ -5,21 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
-#include <type_traits>
 
 #include <iconv.h>
+
+#include "engine/handle.h"
 
 namespace ptin {
 namespace {
 
 // NOLINTNEXTLINE(performance-no-int-to-ptr): how POSIX says that there is none
 const auto kNoConverter = reinterpret_cast<iconv_t>(-1);
-
-struct ConverterFree {
-  void operator()(std::remove_pointer_t<iconv_t>* converter) const { iconv_close(converter); }
-};
-using Converter = std::unique_ptr<std::remove_pointer_t<iconv_t>, ConverterFree>;
 
 /// The one character that some bytes are, as expat takes it; -1 where they are none.
 int character_of(iconv_t converter, const char* bytes, std::size_t count) {
@@ -53,7 +48,7 @@ int XMLCALL find_xml_encoding(void* /*ignored*/, const XML_Char* name, XML_Encod
   if (opened == kNoConverter) {
     return XML_STATUS_ERROR;
   }
-  Converter converter(static_cast<std::remove_pointer_t<iconv_t>*>(opened));
+  Handle<void, &iconv_close> converter(opened);
   for (int byte = 0; byte < 256; ++byte) {
     const char text = static_cast<char>(byte);
     const int character = character_of(opened, &text, 1);

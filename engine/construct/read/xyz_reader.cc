@@ -6,10 +6,10 @@
 namespace ptin {
 
 XyzReader::XyzReader(std::string path, std::vector<std::string> columns, const PointPart& part,
-                     bool skips_invalid)
+                     TakeInvalidRow invalid_row)
     : table_(std::move(path), part),
       rows_(table_, point_roles(), std::move(columns)),
-      skips_invalid_(skips_invalid) {
+      invalid_row_(std::move(invalid_row)) {
   table_.let_rows_misfit();
 }
 
@@ -46,19 +46,16 @@ std::string XyzReader::fault() const {
   return rows_.fault_of_no_number(role);
 }
 
-bool XyzReader::next(XyzPoint& point) {
+bool XyzReader::next(SourcePoint& point) {
   while (rows_.next()) {
     if (!table_.is_misfit() && is_number(0, point.x) && is_number(1, point.y) &&
         is_number(2, point.z)) {
       return true;
     }
-    if (!skips_invalid_) {
+    if (!invalid_row_) {
       table_.refuse(fault() + "; --skip-invalid passes over such rows");
     }
-    if (skipped_.rows++ == 0) {
-      skipped_.line = table_.line();
-      skipped_.fault = fault();
-    }
+    invalid_row_(table_.line(), fault());
   }
   return false;
 }

@@ -8,12 +8,11 @@
 #include <vector>
 
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/text_rows.h"
 #include "engine/construct/read/text_table.h"
 
 namespace ptin {
-
-using XyzPoint = SourcePoint;
 
 /// Reads points from CSV or XYZ text (read/text_table.h). The columns of x, y and z are those that
 /// the caller or a header names, else the first three (read/text_rows.h); further columns are
@@ -24,9 +23,10 @@ class XyzReader {
   ///                 a header.
   /// @throws Error as TextTable; invalid_argument  `columns` lacks a coordinate
   /// @param part     As of TextTable.
-  /// @param skips_invalid  Rows that are no points are passed over.
+  /// @param invalid_row  Rows that are no points are passed over and reported here; empty: they are
+  ///                     errors.
   explicit XyzReader(std::string path, std::vector<std::string> columns = {},
-                     const PointPart& part = {}, bool skips_invalid = false);
+                     const PointPart& part = {}, TakeInvalidRow invalid_row = {});
   /// Reads `text`, which it keeps, instead of a file; `name` stands for the path in errors.
   XyzReader(std::string name, std::string text, std::vector<std::string> columns = {});
 
@@ -34,19 +34,12 @@ class XyzReader {
   /// @throws Error as TextRows::next(); invalid_argument  no number, NaN or an infinite one where a
   ///                                    number belongs. The context is "path:line".
   /// Cost: about 0.1 us a line; 1 MiB of memory whatever the file's size.
-  [[nodiscard]] bool next(XyzPoint& point);
+  [[nodiscard]] bool next(SourcePoint& point);
 
-  /// The units as TextRows tells them.
+  /// The units as TextRows gives them.
   [[nodiscard]] DeclaredUnits units() { return rows_.units(); }
   [[nodiscard]] std::string unknown_unit() { return rows_.unknown_unit(); }
 
-  /// The rows that were passed over, and what is wrong with the first of them, at its line.
-  struct Skipped {
-    std::uint64_t rows = 0;
-    std::uint64_t line = 0;
-    std::string fault;
-  };
-  [[nodiscard]] const Skipped& skipped() const noexcept { return skipped_; }
   /// Declarations of the comments before the first row, which this reads.
   /// @throws Error as next()
   [[nodiscard]] const DeclaredComments& declared() {
@@ -56,7 +49,7 @@ class XyzReader {
 
   /// The line of the point that was read last.
   [[nodiscard]] std::uint64_t line() const noexcept { return table_.line(); }
-  /// What the rows tell that were read.
+  /// What the rows say that were read.
   [[nodiscard]] RowsOfPart rows() const {
     const RowNumbering numbering = rows_.numbering();
     return {numbering, table_.lines(), numbering.rows == 0 ? 0 : table_.line()};
@@ -70,8 +63,7 @@ class XyzReader {
 
   TextTable table_;
   TextRows rows_;
-  bool skips_invalid_ = false;
-  Skipped skipped_;
+  TakeInvalidRow invalid_row_;
 };
 
 }  // namespace ptin

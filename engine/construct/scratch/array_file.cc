@@ -105,7 +105,11 @@ std::span<const std::byte> ArrayFileReader::take_bytes(std::size_t element) {
   std::copy_n(mapped_.at(offset_), sizeof header, reinterpret_cast<std::byte*>(&header));
   const std::span<const std::byte> bytes(mapped_.at(offset_ + sizeof header),
                                          header.element_bytes * header.elements);
-  const bool is_sound = header.element_bytes == element && checksum_of(bytes) == header.checksum;
+  const std::span<const std::byte> zeros(bytes.data() + bytes.size(),
+                                         padded(bytes.size()) - bytes.size());
+  const bool is_sound =
+      header.element_bytes == element && checksum_of(bytes) == header.checksum &&
+      std::all_of(zeros.begin(), zeros.end(), [](std::byte zero) { return zero == std::byte{0}; });
   mapped_.require_undamaged();
   if (!is_sound) {
     refuse();

@@ -4,10 +4,12 @@
 // to one another on disk. Read back by the same program on the same machine only.
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "engine/construct/scratch/plain_value.h"
@@ -20,7 +22,7 @@ namespace ptin {
 /// What a manifest knows of a finished file.
 struct ArrayFileFacts {
   std::uint64_t bytes = 0;
-  std::uint64_t checksum = 0;  ///< Of the headers, which hold the checksums of the arrays.
+  std::uint64_t checksum = 0;  ///< Checksum of the headers, which hold those of the arrays.
   friend bool operator==(const ArrayFileFacts&, const ArrayFileFacts&) = default;
 };
 
@@ -31,6 +33,11 @@ const std::string& without_old(FileLayer& files, const std::string& path);
 /// Says that a temporary file is not what was written: the disk, or another program, damaged it.
 /// @throws Error corruption  always
 [[noreturn]] void refuse_damaged(const std::string& path);
+
+/// A type, const or not: a template `serialize(file, value)` says once which members of a value are kept,
+/// and in which order, for writing and for reading.
+template <class T, class Value>
+concept MaybeConst = std::same_as<std::remove_const_t<T>, Value>;
 
 /// Writes arrays one after the other. A file of that name that is there already is replaced: it is
 /// what an interrupted build left.
@@ -48,7 +55,13 @@ class ArrayFileWriter {
   void put(const std::vector<T>& array) {
     put(std::span<const T>(array));
   }
-  void put_text(const std::string& text) { put(std::span<const char>(text)); }
+  /// Writes values one after the other: vectors, spans, plain values and texts as an array each,
+  /// optional ones behind whether they are there, and of other types what serialize(file, value) names.
+  /// @throws Error as put()
+  template <class... Values>
+  void values(const Values&... values) {
+    (put_value(values), ...);
+  }
 
   /// Makes what was written durable.  @throws Error io_error, resource_exhausted
   void sync() { file_.sync(); }
@@ -60,6 +73,23 @@ class ArrayFileWriter {
   }
 
  private:
+  template <class T>
+  void put_value(const T& value) {
+    if constexpr (requires { put(value); }) {
+      put(value);
+    } else if constexpr (std::same_as<T, std::string>) {
+      put(std::span<const char>(value));
+    } else if constexpr (requires { value.has_value(); }) {
+      put_value(value.has_value());
+      if (value) {
+        put_value(*value);
+      }
+    } else if constexpr (PlainValue<T>) {
+      put(std::span<const T>(&value, 1));
+    } else {
+      serialize(*this, value);
+    }
+  }
   void put_bytes(std::span<const std::byte> bytes, std::size_t element);
 
   ScratchFile file_;
@@ -97,13 +127,38 @@ class ArrayFileReader {
     require_undamaged();
     return copy;
   }
-  /// Takes a text as take_copy() takes numbers.
-  [[nodiscard]] std::string take_text() {
-    const std::vector<char> text = take_copy<char>();
-    return {text.begin(), text.end()};
+  /// Takes back what ArrayFileWriter::values() wrote.  @throws Error as take_copy()
+  template <class... Values>
+  void values(Values&... values) {
+    (take_value(values), ...);
   }
 
  private:
+  template <class T>
+  void take_value(T& value) {
+    if constexpr (std::same_as<T, std::string>) {
+      const std::vector<char> text = take_copy<char>();
+      value.assign(text.begin(), text.end());
+    } else if constexpr (requires { value.push_back(value.front()); }) {
+      value = take_copy<typename T::value_type>();
+    } else if constexpr (requires { value.has_value(); }) {
+      bool is_there = false;
+      take_value(is_there);
+      value.reset();
+      if (is_there) {
+        take_value(value.emplace());
+      }
+    } else if constexpr (PlainValue<T>) {
+      const std::span<const T> one = take<T>();
+      if (one.size() != 1) {
+        refuse();
+      }
+      value = one.front();
+      require_undamaged();
+    } else {
+      serialize(*this, value);
+    }
+  }
   std::span<const std::byte> take_bytes(std::size_t element);
   [[noreturn]] void refuse() const { refuse_damaged(file_.path()); }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -27,7 +28,7 @@ namespace ptin {
 /// What sorting took.
 struct SortCounts {
   std::uint64_t runs = 0;     ///< Sorted in memory and written.
-  std::uint64_t merges = 0;   ///< Of runs to a longer run on disk; not the last, which hands out.
+  std::uint64_t merges = 0;   ///< Merges to longer runs on disk; not the last, which hands out.
   std::uint64_t written = 0;  ///< Records; each counts as often as it was written.
   std::size_t widest = 0;     ///< Most runs merged at a time.
   std::size_t held = 0;       ///< Most records in memory at a time.
@@ -42,14 +43,14 @@ struct SortCounts {
 /// are there and one more is to come, all of them become one run of the next level, whose runs are
 /// treated likewise. Sorting n records in the memory of m thus writes each of them 1 + log(n / m) /
 /// log(m / 256) times, rounded down: once up to n = m^2 / 256.
-template <class Record, class Before>
+template <class Record, class Before = std::less<>>
 class ExternalSorter {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
   /// @param memory  Folder and bytes for records. Where the bytes are fewer than kLeastRecords
   ///     records take, it takes these all the same.
-  /// @param stem    Of the names of its files, for errors.
+  /// @param stem    Stem of the names of its files, for errors.
   /// @param stop    Looked at where add() merges.
   explicit ExternalSorter(const ExternalMemory& memory, std::string stem = "sorted",
                           std::stop_token stop = {})

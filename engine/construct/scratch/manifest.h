@@ -27,9 +27,9 @@ class Manifest {
 
   /// The entries that the file had when it was opened, group after group.
   [[nodiscard]] const std::vector<nlohmann::json>& entries() const noexcept { return entries_; }
-  /// True where the file holds more than entries() tells: its end is torn, or it is damaged.
+  /// True where the file holds more than entries() has: its end is torn, or it is damaged.
   [[nodiscard]] bool has_more() const noexcept { return bytes_ != file_bytes_; }
-  /// Writes a group and syncs it. What the group tells of must be durable before.
+  /// Writes a group and syncs it. What the group speaks of must be durable before.
   /// @throws Error io_error, resource_exhausted
   void append(const std::vector<nlohmann::json>& group);
 

@@ -32,7 +32,7 @@ class RecordFile {
 
  public:
   /// In a file without a name in the folder of `memory`; it goes with the object.
-  /// @param stem  Of the name that errors show.
+  /// @param stem  Stem of the name that errors show.
   /// @throws Error not_found (no such folder), io_error, resource_exhausted
   RecordFile(const ExternalMemory& memory, const std::string& stem)
       : file_(std::make_unique<ScratchFile>(memory.files, memory.folder, stem, true)) {}
@@ -61,13 +61,13 @@ class RecordFile {
     written_ += block_.size();
     block_.clear();
   }
-  /// Of each block of records. Complete after finish().
+  /// One for each block of records. Complete after finish().
   [[nodiscard]] const std::vector<std::uint64_t>& checksums() const noexcept { return checksums_; }
   /// @throws Error io_error, resource_exhausted
   void sync() { file_->sync(); }
   /// Takes up the file of another process, which was finished. From then on every block is checked
   /// when something of it is read.
-  /// @param path                Of the same file, for errors.
+  /// @param path                Path of the same file, for errors.
   /// @param records, checksums  What size() and checksums() were.
   void take_up(const std::string& path, std::uint64_t records,
                std::vector<std::uint64_t> checksums) {
@@ -131,7 +131,7 @@ class RecordFile {
   std::vector<Record> block_;
   std::uint64_t written_ = 0;
   std::vector<std::uint64_t> checksums_;
-  std::string path_;  ///< Of a file that was taken up.
+  std::string path_;  ///< Path of a file that was taken up.
 };
 
 }  // namespace ptin

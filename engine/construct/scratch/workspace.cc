@@ -52,7 +52,7 @@ void require_ours(bool is_ours, const std::string& folder) {
   }
 }
 
-/// Refuses a manifest that tells nothing beside files that are there: it is another's, or damaged.
+/// Refuses a manifest that says nothing beside files that are there: it is another's, or damaged.
 void require_empty_beside(const Manifest& manifest, const std::string& folder) {
   if (is_empty_but_for(folder, manifest_in(folder))) {
     return;

@@ -14,12 +14,6 @@ std::string numbers_of(const TileId& id) {
   return std::to_string(id.level) + "-" + std::to_string(id.x) + "-" + std::to_string(id.y);
 }
 
-nlohmann::json json_of(const ArrayFileFacts& f) { return {f.bytes, f.checksum}; }
-
-ArrayFileFacts facts_in(const nlohmann::json& j) {
-  return {j.at(0).get<std::uint64_t>(), j.at(1).get<std::uint64_t>()};
-}
-
 TileId tile_in(const nlohmann::json& j, std::size_t at) {
   return {j.at(at).get<int>(), j.at(at + 1).get<std::int64_t>(), j.at(at + 2).get<std::int64_t>()};
 }
@@ -62,6 +56,12 @@ TaskName producer_of(const TileId& tile, TileFile file) noexcept {
       break;
   }
   return {is_batch ? TaskKind::kCollapse : TaskKind::kClose, tile};
+}
+
+nlohmann::json json_of(const ArrayFileFacts& facts) { return {facts.bytes, facts.checksum}; }
+
+ArrayFileFacts array_facts_in(const nlohmann::json& json) {
+  return {json.at(0).get<std::uint64_t>(), json.at(1).get<std::uint64_t>()};
 }
 
 nlohmann::json json_of(const TaskName& name) {
@@ -110,7 +110,7 @@ nlohmann::json json_of(const TaskResult& result) {
 TaskResult task_result_in(const nlohmann::json& json) {
   TaskResult result;
   for (std::size_t i = 0; i < kTileFiles; ++i) {
-    result.files[i] = facts_in(json.at("files").at(i));
+    result.files[i] = array_facts_in(json.at("files").at(i));
   }
   result.page_bytes = json.at("page_bytes").get<std::uint64_t>();
   result.lone_samples = json.at("lone").get<std::uint64_t>();

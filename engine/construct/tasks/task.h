@@ -22,12 +22,12 @@
 namespace ptin {
 
 enum class TaskKind : std::uint8_t {
-  // Of reading a source, before its tiles are known; numbered from 0.
+  // Reading a source, before its tiles are known; numbered from 0.
   kScan,   ///< A band of a raster: its heights are looked at.
   kRead,   ///< A portion of points: those that are wanted go to a spool.
   kShare,  ///< A share of these: they are put on the grid, apart for each range of the curve.
   kSort,   ///< A range of the curve: its points are sorted into buckets.
-  // Of tiles.
+  // Tiles.
   kCollapse,  ///< A batch: its leaves are read from the source, collapsed and joined.
   kJoin,      ///< A tile of level 2 or more: what its children pushed up is joined and collapsed.
   kTighten,   ///< A batch: the segments above it are replayed over its leaves.
@@ -79,7 +79,7 @@ struct InputFile {
   ArrayFileFacts facts;
 };
 
-/// What a worker is told. The order of inputs is that of:
+/// What a worker is given. The order of inputs is that of:
 /// - read, share, sort: the plan of all of them;
 /// - join: the `pushed` of its children, in the order of TileTree::children();
 /// - tighten: the `pushed` of the root; the `segment` of each tile above, the root first;
@@ -93,15 +93,20 @@ struct Task {
   std::uint64_t bytes = 0;
   // What follows is of the process that does it, and in no message.
   std::stop_token stop{};
-  /// Told now and then how much is done, never less than before: bytes of a text, samples of a
-  /// raster or of whole leaves, points. May be empty.
+  /// Called now and then with how much is done, never less than before: bytes of a text, samples of
+  /// a raster or of whole leaves, points. May be empty.
   std::function<void(std::uint64_t done)> progress{};
+  void tell(std::uint64_t done) const {
+    if (progress) {
+      progress(done);
+    }
+  }
 };
 
-/// What a worker tells when a task is done.
+/// What a worker reports when a task is done.
 struct TaskResult {
   std::array<ArrayFileFacts, kTileFiles> files{};  ///< By TileFile; 0 bytes: no such file.
-  std::uint64_t page_bytes = 0;                    ///< Of the pages themselves.
+  std::uint64_t page_bytes = 0;                    ///< Bytes of the pages themselves.
   std::uint64_t lone_samples = 0;                  ///< Collapse: in its leaves; see StartedTile.
   std::string told{};                              ///< Scan: what was found; at most 1 KB.
   [[nodiscard]] const ArrayFileFacts& facts(TileFile file) const {
@@ -175,10 +180,12 @@ auto read_input(const std::string& folder, const InputFile& input, Read&& read) 
 
 // As JSON: for the manifest, for messages between processes and for the notes of parts. At most
 // 1 KB, for trees of up to 20 levels.
+[[nodiscard]] nlohmann::json json_of(const ArrayFileFacts& facts);
 [[nodiscard]] nlohmann::json json_of(const TaskName& name);
 [[nodiscard]] nlohmann::json json_of(const Task& task);
 [[nodiscard]] nlohmann::json json_of(const TaskResult& result);
 /// @throws nlohmann::json::exception  the JSON is none that json_of() made
+[[nodiscard]] ArrayFileFacts array_facts_in(const nlohmann::json& json);
 [[nodiscard]] TaskName task_name_in(const nlohmann::json& json);
 [[nodiscard]] Task task_in(const nlohmann::json& json);
 [[nodiscard]] TaskResult task_result_in(const nlohmann::json& json);

@@ -55,7 +55,7 @@ class ThreadRun {
   /// What one thread does. Its token is asked for a stop once, since nothing begins after that.
   struct AtWork {
     std::stop_source stop;
-    std::uint64_t number = 0;  ///< Of its task, in the order in which they are handed out, from 1.
+    std::uint64_t number = 0;  ///< Its task's place in the order of handing out, from 1.
   };
 
   void work(AtWork& mine) noexcept;
@@ -114,7 +114,7 @@ void ThreadRun::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t byte
   }
 }
 
-/// Runs a task, and tells the schedule what came of it, unless the work is over by then.
+/// Runs a task, and reports to the schedule what came of it, unless the work is over by then.
 void ThreadRun::run_one(const Task& task, std::unique_lock<std::mutex>& lock) {
   std::optional<DamagedInput> damage;
   TaskResult result;

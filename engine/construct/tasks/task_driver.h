@@ -18,10 +18,11 @@ namespace ptin {
 struct TaskLimits {
   int threads = 1;
   std::uint64_t bytes = ~std::uint64_t{0};  ///< The sum over all tasks that run at once.
-  /// Told that the tasks at work take `bytes`; to give freed memory back to the system where so
-  /// much would not fit beside what the process holds. What a heap keeps of tasks that have ended is
-  /// counted for no task. Called by a thread that must wait (`bytes` includes the task that it waits
-  /// to start), and by one whose next task is larger than its last. May be empty.
+  /// Called with the bytes that the tasks at work take; to give freed memory back to the system
+  /// where so much would not fit beside what the process holds. What a heap keeps of tasks that
+  /// have ended is counted for no task. Called by a thread that must wait (`bytes` includes the
+  /// task that it waits to start), and by one whose next task is larger than its last. May be
+  /// empty.
   std::function<void(std::uint64_t bytes)> give_back{};
 };
 
@@ -35,8 +36,8 @@ class TaskDriver {
   TaskDriver& operator=(const TaskDriver&) = delete;
   virtual ~TaskDriver() = default;
 
-  /// Told of the build before the first task of reading, then without the index that reading makes,
-  /// and before the first task of its tiles. By default it does nothing.
+  /// Called with the build before the first task of reading, then without the index that reading
+  /// makes, and before the first task of its tiles. By default it does nothing.
   /// @return  False: the build ends here, and its folder stays for those who do the tasks.
   [[nodiscard]] virtual bool begin(const BuildNote& note);
   /// How many processes do the tasks of reading at once.
@@ -44,10 +45,10 @@ class TaskDriver {
   /// After an error nothing more begins. Tasks that were begun later than the one that met it are
   /// stopped, and those that were begun before it go on to their end, since their errors come first.
   /// @param worker  Does tasks in this process.
-  /// @param limits  Of this process.
+  /// @param limits  Limits of this process.
   /// @return The most bytes that were admitted at once in this process, by estimate.
   /// @throws Error cancelled  `stop` fired; and whatever a task, the schedule or give_back throws,
-  ///     but for DamagedInput, of which the schedule is told: of several errors that of the task
+  ///     but for DamagedInput, which the schedule hears of: of several errors that of the task
   ///     that was handed out first
   virtual std::uint64_t run(TaskSchedule& schedule, TaskWorker& worker, const TaskLimits& limits,
                             const std::stop_token& stop);

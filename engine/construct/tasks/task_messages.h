@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a process that directs a build and those that do its tasks tell each other: lines of JSON.
+// What a process that directs a build and those that do its tasks send each other: lines of JSON.
 #pragma once
 
 #include <string>
@@ -15,7 +15,8 @@ class TaskSchedule;
 
 /// What processes that do tasks must know of a build, beside its inputs and options.
 struct BuildNote {
-  nlohmann::json index;   ///< Of the source, as ReadSource takes it; null while it is being read.
+  nlohmann::json
+      index;  ///< Of the source, as take_up_source() takes it; null while it is being read.
   std::string folder;     ///< The build's, with the file of pages; "" where there is none yet.
   std::string temporary;  ///< The folder of its temporary files; likewise.
   nlohmann::json inputs;  ///< Names, sizes and times of the inputs, which must be the same for all.
@@ -29,13 +30,13 @@ struct BuildNote {
 [[nodiscard]] std::string message_of(const Task& task);
 /// @throws nlohmann::json::exception  the message is none of message_of()
 [[nodiscard]] Task task_in_message(const std::string& message);
-/// Does a task, and tells what came of it: its result, the input that was damaged, or the error that
-/// it met.
+/// Does a task, and returns what came of it: its result, the input that was damaged, or the error
+/// that it met.
 [[nodiscard]] std::string answer_to(const Task& task, TaskWorker& worker);
 /// The answer of a process that could not begin, or to which something else happened.
 [[nodiscard]] std::string answer_of(const Error& error);
 /// Hands an answer to the schedule.
-/// @throws Error  the error that the answer tells; as TaskSchedule::done() and failed()
+/// @throws Error  the error that the answer holds; as TaskSchedule::done() and failed()
 void take_answer(const TaskName& name, const std::string& answer, TaskSchedule& schedule);
 
 }  // namespace ptin

@@ -68,7 +68,7 @@ void TaskList::progress(const TaskName& name, std::uint64_t done) {
   }
   const std::lock_guard lock(mutex_);
   std::uint64_t& before = done_.at(number_of(name));
-  done = std::min(done, sizes_[number_of(name)]);  // what a task tells may go by an estimate
+  done = std::min(done, sizes_[number_of(name)]);  // what a task reports may go by an estimate
   if (done > before) {
     all_done_ += done - before;
     before = done;

@@ -35,7 +35,7 @@ class TaskSchedule {
   virtual void done(const TaskName& name, const TaskResult& result) = 0;
   /// To be called when a task met a damaged input. By default this throws it.
   virtual void failed(const TaskName& name, const DamagedInput& damage);
-  /// Told how much of a task is done, as Task::progress. Threads: any number.
+  /// Notes how much of a task is done, as Task::progress. Threads: any number.
   virtual void progress(const TaskName& name, std::uint64_t done) = 0;
   /// Takes up what was done elsewhere, before anything is handed out. By default there is nothing.
   virtual void take_up(const TaskResults& results);
@@ -49,7 +49,7 @@ class TaskList final : public TaskSchedule {
   /// @param known  Results of tasks that are not of the list.
   TaskList(const std::vector<TaskName>& tasks, Describe describe, TaskResults known);
   /// Tasks of reading a source, which do not depend on one another.
-  /// @param sizes  Of each, in a unit of the stage's own: for progress.
+  /// @param sizes  Size of each, in a unit of the stage's own: for progress.
   /// @param bytes  Memory that each takes at least, by estimate.
   /// @param plan   The facts of the file that they go by; none where there is no such file.
   TaskList(TaskKind kind, std::vector<std::uint64_t> sizes, std::uint64_t bytes,
@@ -60,7 +60,7 @@ class TaskList final : public TaskSchedule {
   void done(const TaskName& name, const TaskResult& result) override;
   void progress(const TaskName& name, std::uint64_t done) override;
 
-  /// Tasks of reading: their price, and who is told how far they are, by one thread at a time.
+  /// Tasks of reading: their price, and who hears how far they are, from one thread at a time.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
   void set_bytes(std::uint64_t bytes) noexcept { bytes_ = bytes; }
   void tell(std::function<void(const StageProgress& progress)> tell) { tell_ = std::move(tell); }
@@ -79,9 +79,9 @@ class TaskList final : public TaskSchedule {
   std::vector<InputFile> inputs_;
   std::uint64_t bytes_ = 0;
   std::function<void(const StageProgress& progress)> tell_;
-  std::vector<std::uint64_t> sizes_;  ///< Of tasks of reading.
+  std::vector<std::uint64_t> sizes_;  ///< Sizes of tasks of reading.
   std::mutex mutex_;                  ///< Guards what follows.
-  std::vector<std::uint64_t> done_;   ///< Of these sizes.
+  std::vector<std::uint64_t> done_;   ///< How much of each is done.
   std::uint64_t all_done_ = 0, total_ = 0;
 };
 

@@ -71,7 +71,7 @@ class Finder {
   std::size_t n_;
   BorderWitnesses found_;
   std::vector<std::uint32_t> first_, around_;  ///< Triangles of each vertex.
-  std::vector<std::uint8_t> on_seam_;          ///< Of each vertex: other leaves have it too.
+  std::vector<std::uint8_t> on_seam_;          ///< 1 for a vertex that other leaves have too.
 
   // The forest. A node is a witness that is not far, or is beside one that is not.
   struct Node {
@@ -112,7 +112,7 @@ class Finder {
   void grow_trees();
   void find_reaches();
 
-  std::vector<std::uint32_t> witness_;  ///< Of each triangle, as Node::at; kNone in the margin.
+  std::vector<std::uint32_t> witness_;  ///< Each triangle's, as Node::at; kNone in the margin.
   std::vector<std::uint32_t> node_of_vertex_;
   std::unordered_map<TriangleId, std::uint32_t> node_of_triangle_;
   std::vector<Node> nodes_;
@@ -202,12 +202,15 @@ void Finder::find_nearest() {
   while (!queue.empty()) {
     const auto [reached, key, v] = queue.top();
     queue.pop();
+    // A path may come nearer to its source again, so a vertex can be improved after its turn. It is
+    // queued once more then, and entries that are out of date are passed over.
     if (reached != best[v] || key != key_of(found_.nearest[v])) {
       continue;
     }
     const GridPoint source = found_.nearest[v];
     for_each_neighbour(v, [&](VertexId to) {
       const double there = distance(tin_.position(to), source, part_.step);
+      // What is farther than counts is left unknown, which is an infinite depth.
       if (there <= part_.farthest &&
           (there < best[to] || (there == best[to] && key < key_of(found_.nearest[to])))) {
         best[to] = there;
@@ -224,6 +227,7 @@ void Finder::find_nearest() {
 void Finder::find_doubts() {
   found_.doubt.assign(n_, 0.0F);
   for (VertexId v = 0; v < n_; ++v) {
+    // Up to `known` another leaf can know of no border that this one does not.
     if (on_seam_[v] != 0 && found_.nearest[v] != BorderWitnesses::kNoBorder &&
         depth_of(v) > part_.known) {
       found_.doubt[v] = length_bound(2.0 * depth_of(v));
@@ -247,6 +251,7 @@ void Finder::find_regions() {
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     std::vector<VertexId>& l = leader[static_cast<std::size_t>(tin_.classes[t])];
     const Triangle& triangle = tin_.triangles[t];
+    // All three corners are joined: triangles that share no more than a vertex are one region.
     const VertexId first = find(l, triangle.v[0]);
     l[find(l, triangle.v[1])] = first;
     l[find(l, triangle.v[2])] = first;
@@ -262,6 +267,7 @@ void Finder::find_regions() {
   for (VertexId v = 0; v < n_; ++v) {
     if (found_.nearest[v] != BorderWitnesses::kNoBorder) {
       const VertexId source = vertex_at(found_.nearest[v]);
+      // A vertex of the border touches a region of either class, so v is near to both.
       found_.region[v] = {find(leader[0], source), find(leader[1], source)};
     }
   }
@@ -279,6 +285,7 @@ std::uint32_t Finder::node_at(std::uint32_t at) {
     *known = next;
     Node& node = nodes_.emplace_back();
     node.at = at;
+    // A witness at a corner has no depth of its own: it comes behind those that have.
     node.key = at < n_ ? depth_of(at) : 0.0;
   }
   return *known;
@@ -304,6 +311,7 @@ void Finder::measure_triangles() {
                       ? static_cast<std::uint32_t>(n_ + t)
                       : tin_.triangles[t].v[w.witness];
     if (is_far(witness_[t])) {
+      // A far witness becomes a node only beside one that is not: as the end of that one's way.
       found_.reach[witness_[t]] = std::numeric_limits<float>::infinity();
       continue;
     }
@@ -312,6 +320,8 @@ void Finder::measure_triangles() {
                                            place_of(w.corners[2])};
     node.depth =
         std::max(node.depth, length_bound(std::max(w.gap, greatest_depth(w, whole, part_.step))));
+    // A box stands for the sides, so that all the border of a branch is one box as well. What the
+    // box holds besides only makes the reach larger.
     for (int i = 0; i < 3; ++i) {
       if (w.is_border_side[i]) {
         node.border = united(node.border, w.corners[(i + 1) % 3]);
@@ -343,6 +353,8 @@ void Finder::for_each_link(const Visit& visit) {
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
     for (int i = 0; i < 3 && witness_[t] != kNone; ++i) {
       const TriangleId other = tin_.triangles[t].n[i];
+      // A side is seen from both triangles; the lower number takes it. Two far witnesses need no
+      // link, since both have an infinite reach anyhow.
       if (other == kNone || other < t || witness_[other] == kNone ||
           witness_[other] == witness_[t] || tin_.classes[t] != tin_.classes[other] ||
           (is_far(witness_[t]) && is_far(witness_[other]))) {
@@ -359,6 +371,7 @@ void Finder::for_each_link(const Visit& visit) {
 void Finder::link_nodes() {
   std::vector<std::uint32_t> count;
   for_each_link([&](std::uint32_t from, const Link& link) {
+    // The first pass makes the nodes of far witnesses, so the number of nodes is not known before.
     count.resize(std::max<std::size_t>(count.size(), std::max(from, link.node) + 1));
     ++count[from];
   });
@@ -367,6 +380,7 @@ void Finder::link_nodes() {
     first_link_[i + 1] = first_link_[i] + (i < count.size() ? count[i] : 0);
   }
   links_.resize(first_link_.back());
+  // From here on `count` is where the next link of each node goes.
   std::copy(first_link_.begin(), first_link_.begin() + static_cast<std::ptrdiff_t>(count.size()),
             count.begin());
   for_each_link([&](std::uint32_t from, const Link& link) { links_[count[from]++] = link; });
@@ -390,6 +404,8 @@ void Finder::grow_trees() {
       order_.push_back(id);
       for (std::uint32_t i = first_link_[id]; i < first_link_[id + 1]; ++i) {
         const Link& link = links_[i];
+        // Only a node that was taken before can be the next one, so ways never run in a circle. The
+        // deepest of these is chosen, since ways are to lead away from the border.
         if (!nodes_[link.node].taken) {
           put(link.node);
         } else if (!is_far(node.at) && (node.parent == kNone || depth_of_node(link.node).is_deeper(
@@ -407,6 +423,9 @@ void Finder::grow_trees() {
   }
   std::sort(roots.begin(), roots.end(),
             [](const Depth& a, const Depth& b) { return a.is_deeper(b); });
+  // Far nodes have infinite keys and come first. Each is a root of its own, for all ways that reach
+  // one end there; what is left then has no far node in its region, and its deepest node is the
+  // root.
   const auto near =
       std::find_if(roots.begin(), roots.end(), [&](const Depth& root) { return !is_far(root.at); });
   std::for_each(roots.begin(), near, [&](const Depth& root) { put(root.node); });
@@ -418,11 +437,14 @@ void Finder::grow_trees() {
 }
 
 void Finder::find_reaches() {
+  // Children come behind their parents in the order, so backwards each has all of its branch.
   for (std::size_t i = order_.size(); i-- > 0;) {
     const Node& node = nodes_[order_[i]];
     float reach = std::numeric_limits<float>::infinity();
     if (node.parent != kNone) {
       Node& next = nodes_[node.parent];
+      // The way is two straight pieces, to the middle of the side and on to the next node. The
+      // distance to the farthest point of a box is convex, so it is greatest at an end of a piece.
       double most = 0.0;
       for (const GroundPlace p :
            {place_of_node(node), middle_of(node.parent_side), place_of_node(next)}) {

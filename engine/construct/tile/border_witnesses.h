@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What tells when the border between surface and void moves, and how far (engine/DESIGN.md, section
+// What shows when the border between surface and void moves, and how far (engine/DESIGN.md, section
 // 3).
 #pragma once
 
@@ -33,8 +33,8 @@ struct PartOfTerrain {
   double farthest = std::numeric_limits<double>::infinity();
 };
 
-/// Of a triangle whose corners are all on the border, or of which that is not known: the witness
-/// stands at one of its corners, infinitely near it within the triangle.
+/// A witness infinitely near a corner of its triangle, within it: for a triangle whose corners are
+/// all on the border, or may be.
 struct CornerWitness {
   TriangleId triangle;
   WayIn way;
@@ -62,13 +62,13 @@ struct BorderWitnesses {
     kBorder,   ///< Surface and void meet here.
     kUnknown,  ///< One class in the part, but not all of its triangles are in it.
   };
-  std::vector<Kind> kind;  ///< Beside tin.vertices, as are the next two.
+  std::vector<Kind> kind;  ///< One for each of tin.vertices, as the next two.
   /// The nearest vertex of the border that is known, or one that is not much farther; itself for
   /// one on the border. kNoBorder where the part has none.
   std::vector<GridPoint> nearest;
   std::vector<float> reach;  ///< Ground units; 0 for a vertex that is no witness.
-  /// Of each vertex: which connected region of surface, and which of voids, its nearest vertex of the
-  /// border belongs to; kNone where the part has no border.
+  /// The connected regions of surface and of voids that the nearest border vertex of each vertex
+  /// belongs to; kNone where the part has no border.
   std::vector<std::array<std::uint32_t, 2>> region;
   /// How far the regions of the other class may be apart that a vertex on a seam lies between, as far
   /// as this leaf can tell: twice its depth where another leaf may know of a nearer border, else 0.

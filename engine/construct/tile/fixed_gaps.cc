@@ -61,7 +61,7 @@ double FixedGaps::largest_gap(const EdgeEnd& a, const EdgeEnd& b, double stop_ab
     const std::int64_t sq = orient(a.position, b.position, q.position);
     const std::int64_t ta = orient(p.position, q.position, a.position);
     const std::int64_t tb = orient(p.position, q.position, b.position);
-    // Where they only touch, a vertex tells: one of the full TIN, which is a sample.
+    // Where they only touch, a vertex decides: one of the full TIN, which is a sample.
     if ((sp > 0) == (sq > 0) || (ta > 0) == (tb > 0) || sp == 0 || sq == 0 || ta == 0 || tb == 0) {
       return;
     }

@@ -19,7 +19,7 @@ namespace ptin {
 class FixedGaps {
  public:
   FixedGaps() = default;
-  /// @param sides  Beside part.triangles: bit i is set where side i is a fixed edge; may be empty.
+  /// @param sides  By part.triangles: bit i is set where side i is a fixed edge; may be empty.
   FixedGaps(const Tin& part, std::span<const std::uint8_t> sides, const HeightEncoding& encoding);
 
   [[nodiscard]] bool is_empty() const noexcept { return edges_.empty(); }

@@ -17,7 +17,7 @@ namespace ptin {
 /// the largest of all. REQUIRES: the surface of a leaf answers for edges that lead out of the leaf.
 class JoinedSurface final : public FullSurface {
  public:
-  /// @param box  Of all samples of the leaf and its full surface.
+  /// @param box  Holds all samples of the leaf and its full surface.
   void add(std::unique_ptr<const FullSurface> leaf, const GridBox& box) {
     has_fixed_edges_ = has_fixed_edges_ || leaf->has_fixed_edges();
     leaves_.push_back({std::move(leaf), box});

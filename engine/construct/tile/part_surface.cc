@@ -21,7 +21,7 @@ struct PartSurface::Step {
   [[nodiscard]] bool is_end() const noexcept { return vertex == kNone && triangle == kNone; }
 };
 
-/// One edge on its way over the part, piece by piece. Tells `visitor` where it goes:
+/// One edge on its way over the part, piece by piece. Reports to `visitor` where it goes:
 /// - touch(v): through this vertex;
 /// - cross(t, side): over this side of a triangle;
 /// - through(t): through the inside of this triangle.

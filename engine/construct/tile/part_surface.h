@@ -18,7 +18,7 @@ namespace ptin {
 
 /// The border between surface and void in a part.
 struct PartBorder {
-  BorderWitnesses witnesses;                          ///< Beside the vertices of the part.
+  BorderWitnesses witnesses;                          ///< Witnesses, vertex by vertex of the part.
   std::function<bool(GridPoint, GridPoint)> goes_on;  ///< As PartOfTerrain::goes_on.
   GroundStep step;
 };
@@ -60,7 +60,7 @@ class PartSurface final : public FullSurface {
 
   void index_border();
   [[nodiscard]] VertexId vertex_at(GridPoint p) const noexcept;
-  /// Tells `visitor` where the edge from a to b goes within the part.
+  /// Reports to `visitor` where the edge from a to b goes within the part.
   template <class Visitor>
   void walk_over(GridPoint a, GridPoint b, Visitor& visitor) const;
   template <class Visit>
@@ -71,8 +71,8 @@ class PartSurface final : public FullSurface {
   std::optional<PartBorder> void_border_;
   std::vector<BorderSide> border_;       ///< By first corner.
   std::vector<std::uint32_t> by_place_;  ///< Indices into border_, along the Hilbert curve.
-  PackedBoxes boxes_;                    ///< Of the sides, in that order.
-  std::vector<std::uint8_t> on_border_;  ///< Beside the vertices: 1 or 0.
+  PackedBoxes boxes_;                    ///< Boxes of the sides, in that order.
+  std::vector<std::uint8_t> on_border_;  ///< 1 for a vertex of the border.
   FixedGaps fixed_;
 };
 

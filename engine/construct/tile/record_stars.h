@@ -18,17 +18,17 @@ namespace ptin {
 /// triangle names its successor, the record whose error will be its death.
 struct RecordStars {
   std::vector<RingCorner> corners;  ///< Ring after ring; all deaths are kLivesOn as yet.
-  /// Beside `corners`: the index of the triangle's successor in Tile::records; kNone for a triangle
-  /// of the full TIN, and where there is no triangle.
+  /// The successor of each corner's triangle, as an index of Tile::records; kNone for a triangle of
+  /// the full TIN, and where there is no triangle.
   std::vector<std::uint32_t> successors;
-  std::vector<std::uint32_t> ring_end;  ///< Of star i, in `corners`.
+  std::vector<std::uint32_t> ring_end;  ///< Ends of stars, in `corners`.
 
   /// Makes room for stars: six triangles each, and meshes have fewer in the mean.
   void reserve(std::size_t stars);
 };
 
 /// Gives triangles their deaths.
-/// @param successors  Beside `corners`.
+/// @param successors  One for each of `corners`.
 /// @param error_of    Called with the index of a successor; gives its final error. Cost: linear.
 template <class ErrorOf>
 void set_deaths(std::span<RingCorner> corners, std::span<const std::uint32_t> successors,
@@ -41,7 +41,7 @@ void set_deaths(std::span<RingCorner> corners, std::span<const std::uint32_t> su
 }
 
 /// Own records with their stars, when all errors are final.
-/// @param records  Of the tile: foreign ones and own ones.
+/// @param records  The tile's: foreign ones and own ones.
 /// @param first    The first own one; records without a star at the beginning of the own ones, those
 ///     of a first pass, get empty rings.
 /// Cost: linear. The arguments are used up.

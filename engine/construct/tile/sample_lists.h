@@ -105,7 +105,7 @@ class SampleLists {
 
   /// Moves all lists to the front of the pool, in the order in which they lie there. Gives back the
   /// room behind them, but for a quarter of theirs. Works in place; invalidates spans and pointers.
-  /// @param slots  Of all lists that are not empty. A count may have been lowered: the first
+  /// @param slots  Slots of all lists that are not empty. A count may have been lowered: the first
   ///     samples stay.
   /// Cost: linear in the pool, and n log n in the number of lists.
   void close_gaps(std::vector<SampleSlot*> slots) {

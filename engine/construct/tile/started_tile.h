@@ -21,14 +21,14 @@ namespace ptin {
 struct SurroundingSamples {
   GridBox box;
   std::vector<HeightBits> heights;
-  std::vector<std::uint8_t> valid;  ///< Beside `heights`; 0 for a sample without a height.
+  std::vector<std::uint8_t> valid;  ///< 1 for each of `heights`, 0 for a sample without one.
 };
 
 /// A leaf with the full TIN of its window, and the full surface under it.
 struct StartedTile {
   Tile tile;
   std::unique_ptr<FullSurface> full;
-  GridBox box;                     ///< Of all samples and the full surface.
+  GridBox box;                     ///< Holds all samples and the full surface.
   std::uint64_t lone_samples = 0;  ///< Samples that touch no surface triangle; treated as void.
   SurroundingSamples around;       ///< Where they were asked for; else empty.
 };
@@ -38,7 +38,7 @@ struct StartedTile {
 [[nodiscard]] GroundStep largest_step(const GroundMetric& ground, const GridBox& rows);
 
 /// Starts a leaf of points or of a TIN: its mesh is `part`, the triangles that are its own.
-/// @param hull    Of the whole terrain.
+/// @param hull    Hull of the whole terrain.
 /// @param ground  Null: the terrain has no voids.
 /// @param fixed_sides  As FixedGaps has them; empty: no breaklines.
 [[nodiscard]] StartedTile start_part(Tin&& part, const MeasureUnits& units, const ConvexHull& hull,

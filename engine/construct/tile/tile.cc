@@ -11,7 +11,7 @@ namespace ptin {
 
 namespace {
 
-/// A void sample is told by the sign of its reach.
+/// A void sample is known by the sign of its reach.
 float signed_reach(float reach, bool has_height) {
   return has_height ? reach : -std::max(reach, FLT_MIN);
 }

@@ -63,18 +63,18 @@ struct MeasureUnits {
 };
 
 /// A tile: everything that a collapse reads and changes. A parent gets the TIN, `carried` with the
-/// records that it names, and samples or witnesses (construct/hierarchy/tile_push.h).
+/// records that it names, and all samples or carried ones (construct/hierarchy/tile_push.h).
 struct Tile {
   Tin tin;
-  std::vector<CarriedState> carried;      ///< Beside tin.triangles.
-  std::vector<VertexState> vertex_state;  ///< Beside tin.vertices.
+  std::vector<CarriedState> carried;      ///< One for each of tin.triangles.
+  std::vector<VertexState> vertex_state;  ///< One for each of tin.vertices.
   SampleLists samples;
   /// First the records that the tile begins with: foreign ones, which its children pushed up, or
   /// those of a first pass (construct/collapse/first_pass.h), which no file keeps. Then its own, in
   /// the order of the collapses.
   std::vector<VertexSplit> records;
-  /// Of its own records. The successors of the triangles in a star are the records that need the
-  /// star's record: it saturates over them, and each has a lower index.
+  /// Stars of its own records. The successors of the triangles in a star are the records that need
+  /// the star's record: it saturates over them, and each has a lower index.
   RecordStars stars;
   MeasureUnits units;
   /// Every grid point inside is a sample, as on rasters: then samples may be joined into blocks.
@@ -84,11 +84,11 @@ struct Tile {
 
 /// Sets everything else of a tile that holds the full TIN: `carried`, `vertex_state`, `has_voids`,
 /// the samples of its CornerWitnesses, and room for samples and records.
-/// @param witnesses  Beside tin.vertices. Null: no border is in reach, and all reaches are +infinity.
+/// @param witnesses  By vertices. Null: no border is in reach, and all reaches are +infinity.
 void start_tile(Tile& tile, const BorderWitnesses* witnesses);
 
-/// Beside tin.triangles: the error at which each triangle dies, that of its successor; kLivesOn for a
-/// triangle of the full TIN. REQUIRES: the errors of the records are final. Cost: linear.
+/// The error at which each of tin.triangles dies, that of its successor; kLivesOn for a triangle of
+/// the full TIN. REQUIRES: the errors of the records are final. Cost: linear.
 [[nodiscard]] std::vector<float> deaths_of(const Tile& tile);
 
 }  // namespace ptin

@@ -30,9 +30,11 @@ TileTree::TileTree(std::int64_t width, std::int64_t height, std::int64_t side)
   }
 }
 
-TileTree TileTree::over_points(std::uint64_t points, std::int64_t side,
+TileTree TileTree::over_points(std::uint64_t points, std::optional<std::int64_t> side,
                                std::shared_ptr<const ConvexHull> hull) {
-  const auto most = static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side);
+  const auto across = static_cast<std::int64_t>(std::ceil(std::sqrt(static_cast<double>(points))));
+  const auto along = static_cast<std::uint64_t>(side.value_or(default_side(across, across)));
+  const std::uint64_t most = along * along;
   int halvings = 0;
   while (points > 0 && ((points - 1) >> (2 * halvings)) + 1 > most) {
     ++halvings;

@@ -7,6 +7,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/geometry/convex_hull.h"
@@ -42,11 +43,13 @@ class TileTree {
 
   /// The tree over points, or over the vertices of a TIN: 4^k leaves with equally many points, one
   /// after the other along the Hilbert curve. Its tiles have the windows of a square raster with
-  /// about as many samples; leaf_number() tells which piece of the curve a leaf is.
+  /// about as many samples; leaf_number() says which piece of the curve a leaf is.
   /// @param points  Their number.
-  /// @param side    A leaf holds at most side * side points.
-  /// @param hull    Of all points: edges on it are no seams.
-  [[nodiscard]] static TileTree over_points(std::uint64_t points, std::int64_t side,
+  /// @param side    A leaf holds at most side * side points; none: default_side() of a square of as
+  ///                many samples.
+  /// @param hull    Of all points: edges on it are no seams. Null while they are not known: such a
+  ///                tree serves for estimates alone.
+  [[nodiscard]] static TileTree over_points(std::uint64_t points, std::optional<std::int64_t> side,
                                             std::shared_ptr<const ConvexHull> hull);
   /// The hull of points; null over a raster.
   [[nodiscard]] const ConvexHull* hull() const noexcept { return hull_.get(); }

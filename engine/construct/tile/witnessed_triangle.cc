@@ -67,8 +67,8 @@ double greatest_depth(const WitnessedTriangle& t, std::span<const GroundPlace> p
     if (t.is_known_side[i]) {
       double most = 0.0;
       for (const GroundPlace p : piece) {
-        most = std::max(most, distance_to_edge(p, place_of(t.corners[(i + 1) % 3]),
-                                               place_of(t.corners[(i + 2) % 3]), step));
+        most = std::max(most, distance_bound(p, place_of(t.corners[(i + 1) % 3]),
+                                             place_of(t.corners[(i + 2) % 3]), step));
       }
       least = std::min(least, most);
     }
@@ -141,8 +141,8 @@ double border_crossing(const WitnessedTriangle& t, GridPoint a, GridPoint b,
     for (const int end : {(i + 1) % 3, (i + 2) % 3}) {
       const bool is_cut_off = side[end] != 0 && (sign == 0 || (side[end] > 0) != (sign > 0));
       if (is_cut_off) {
-        moved = std::max(moved,
-                         distance_to_edge(place_of(t.corners[end]), off.cut[0], off.cut[1], step));
+        moved =
+            std::max(moved, distance_bound(place_of(t.corners[end]), off.cut[0], off.cut[1], step));
       }
     }
   }

@@ -16,13 +16,13 @@ namespace ptin {
 struct WitnessedTriangle {
   static constexpr int kCornerWitness = 3;
   std::array<GridPoint, 3> corners;
-  std::array<GridPoint, 3> nearest;  ///< Of the corners.
+  std::array<GridPoint, 3> nearest;  ///< The nearest known border vertex of each corner.
   std::array<bool, 3>
       is_border_side{};  ///< Side i, opposite to corner i, is or may be of the border.
   std::array<bool, 3> is_known_side{};  ///< Side i is of the border.
   double gap = 0.0;  ///< Distance of the regions of the other class that it lies between; else 0.
   int witness = kCornerWitness;  ///< The corner that is its witness; or there is a CornerWitness.
-  float reach = std::numeric_limits<float>::infinity();  ///< Of that corner.
+  float reach = std::numeric_limits<float>::infinity();  ///< Reach of that corner.
 };
 
 /// The triangle `t` of a part, with its witness.

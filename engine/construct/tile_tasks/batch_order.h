@@ -50,7 +50,7 @@ class BatchOrder {
 
   std::vector<TileId> batches_, output_;
   std::map<TileId, std::size_t> places_;
-  std::vector<std::pair<std::size_t, std::size_t>> batches_of_;  ///< Of each tile above.
+  std::vector<std::pair<std::size_t, std::size_t>> batches_of_;  ///< Batches of each tile above.
 };
 
 }  // namespace ptin

@@ -29,14 +29,14 @@ struct HierarchyOptions {
   std::chrono::milliseconds checkpoint_interval{2000};  ///< Least time between checkpoints.
   TaskDriver* driver = nullptr;  ///< Who runs the tasks; borrowed; null: threads of this process.
   std::stop_token stop;
-  /// Told the samples and leaves that are done, and all there are. Called by any thread, but never
-  /// twice at once. May be empty.
+  /// Called with the samples and leaves that are done, and all there are. Called by any thread, but
+  /// never twice at once. May be empty.
   std::function<void(const StageProgress& progress)> progress;
 };
 
 struct BuiltHierarchy {
   Tin t0;                          ///< The coarsest TIN, every vertex and triangle alive.
-  std::vector<float> t0_deaths;    ///< Beside t0.triangles, as deaths_of().
+  std::vector<float> t0_deaths;    ///< One for each of t0.triangles, as deaths_of().
   std::uint64_t lone_samples = 0;  ///< In all leaves; see StartedTile.
   std::uint64_t most_bytes = 0;    ///< The most that was admitted at once, by estimate.
 };

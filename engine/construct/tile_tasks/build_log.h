@@ -21,7 +21,7 @@ namespace ptin {
 /// Collects notes of finished work, and writes them to the manifest at checkpoints. A checkpoint
 /// syncs the output and the temporary files that the notes name, then appends the notes to the
 /// manifest, then removes the files that are superfluous by these notes. So the manifest never
-/// tells of work that is not durable. After a crash the work since the last checkpoint is done
+/// speaks of work that is not durable. After a crash the work since the last checkpoint is done
 /// again.
 /// Threads: one at a time.
 class BuildLog {
@@ -60,7 +60,7 @@ class BuildLog {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
   TaskResults results_;
   std::uint64_t written_ = 0;
-  nlohmann::json position_;  ///< Of the output, at the last note_written().
+  nlohmann::json position_;  ///< The output's, at the last note_written().
   std::vector<nlohmann::json> lines_;
   std::set<std::string> unsynced_, superfluous_;  ///< Names of files.
 };

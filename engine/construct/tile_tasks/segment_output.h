@@ -6,20 +6,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "engine/construct/hierarchy/segment.h"
+#include "engine/construct/scratch/array_file.h"
+#include "storage/packed_segment.h"
 #include "storage/star.h"
 
 namespace ptin {
 
-/// A segment that is ready for the output.
-struct PreparedSegment {
-  std::vector<std::byte> pages;  ///< Final, whole pages.
-  std::vector<std::byte>
-      description;  ///< What SegmentOutput::add() takes, bytes that only it reads.
+/// A segment that is ready for the output, and what the output must know of what was left out of it.
+struct PreparedSegment : PackedSegment {
+  RecordBounds left_out;           ///< The largest of records that were left out.
+  std::uint64_t void_records = 0;  ///< That make a void triangle or vertex; those left out too.
 };
+
+/// All of a segment but its pages.
+template <class File, MaybeConst<PreparedSegment> Segment>
+void serialize(File& file, Segment& s) {
+  file.values(s.descriptors, s.errors, s.max_rank, s.left_out, s.void_records);
+}
 
 /// The part of an output that workers do: any number of threads at once, in any process that sees
 /// the output's folder.
@@ -49,8 +56,8 @@ class SegmentOutput {
 
   /// What workers of this process use. Lives as long as the output.
   [[nodiscard]] virtual const SegmentPacker& packer() const = 0;
-  /// Takes the next segment, whose pages are in their place.
-  virtual void add(std::span<const std::byte> description) = 0;
+  /// Takes the next segment, whose pages are in their place, and not looked at here.
+  virtual void add(const PreparedSegment& segment) = 0;
   /// Bytes of the pages of all segments that were added.
   [[nodiscard]] virtual std::uint64_t page_bytes() const = 0;
   /// Where the output ends, as JSON for the manifest.
@@ -61,8 +68,5 @@ class SegmentOutput {
   /// @throws Error corruption
   virtual void resume(const nlohmann::json& position) = 0;
 };
-
-/// Packs a segment, places it behind all that were added before, and adds it.
-void add_segment(SegmentOutput& output, StarredRecords& records);
 
 }  // namespace ptin

@@ -38,12 +38,12 @@ class TaskGraph {
   /// The files that a task reads, in the order of Task::inputs.
   [[nodiscard]] std::vector<std::pair<TileId, TileFile>> inputs_of(const TaskName& name) const;
   /// Memory that a task takes, in bytes, by estimate.
-  /// @param results  Of the tasks that write its inputs, at least.
+  /// @param results  Results of the tasks that write its inputs, at least.
   /// @throws Error resource_exhausted  a join needs more than there is
   [[nodiscard]] std::uint64_t bytes_of(const TaskName& name, const TaskResults& results) const;
   /// True when the results of all tasks that write its inputs are there.
   [[nodiscard]] bool can_be_done(const TaskName& name, const TaskResults& results) const;
-  /// The task as a worker is told, but for Task::offset.
+  /// The task as a worker is given it, but for Task::offset.
   /// @throws Error as bytes_of()
   [[nodiscard]] Task describe(const TaskName& name, const TaskResults& results) const;
 

@@ -118,7 +118,7 @@ Task TileSchedule::take() {
 // What follows.
 
 void TileSchedule::done(const TaskName& name, const TaskResult& result) {
-  progress(name, ~std::uint64_t{0});  // another process does not tell how far it is
+  progress(name, ~std::uint64_t{0});  // another process does not report how far it is
   running_.erase(name);
   const bool was_again = again_.erase(name) > 0;
   if (name.kind == TaskKind::kPlace) {
@@ -215,13 +215,13 @@ void TileSchedule::add_segments(const TileId& tile) {
   const TaskName producer = producer_of(tile, TileFile::kDescriptions);
   const InputFile input{tile, TileFile::kDescriptions,
                         log_.results().at(producer).facts(TileFile::kDescriptions)};
-  std::vector<std::vector<std::byte>> segments;  // all are sound before the first is added
+  std::vector<PreparedSegment> segments;  // all are sound before the first is added
   read_input(log_.workspace().temporary_folder(), input, [&](ArrayFileReader& file) {
     while (!file.at_end()) {
-      segments.push_back(file.take_copy<std::byte>());
+      file.values(segments.emplace_back());
     }
   });
-  for (const std::vector<std::byte>& segment : segments) {
+  for (const PreparedSegment& segment : segments) {
     log_.output().add(segment);
   }
 }
@@ -266,7 +266,7 @@ void TileSchedule::progress(const TaskName& name, std::uint64_t done) {
 // -------------------------------------------------------------------------------------------------
 // Damage.
 
-/// Of a task that was done again for one of its files: removes the others where their readers are
+/// Removes files of a task that was done again for the sake of another one, where their readers are
 /// done already.
 void TileSchedule::drop_what_nobody_needs(const TaskName& name) {
   const auto drop_after = [&](TileFile file, const TaskName& reader) {

@@ -30,7 +30,7 @@ namespace ptin {
 /// What failed on a damaged input comes again, after the task that wrote the input.
 class TileSchedule final : public TaskSchedule {
  public:
-  /// Told the samples and leaves that are done, by one thread at a time; may be empty.
+  /// Called with the samples and leaves that are done, by one thread at a time; may be empty.
   using Tell = std::function<void(const StageProgress& progress)>;
   /// Takes up what the log says is done. All arguments must outlive the schedule.
   TileSchedule(const TileTree& tree, const BatchOrder& order, const TaskMemory& memory,
@@ -89,8 +89,8 @@ class TileSchedule final : public TaskSchedule {
   std::uint64_t end_of_places_;  ///< Where its pages go.
   Tell tell_;
   std::mutex mutex_;                    ///< Guards what follows.
-  std::map<TaskName, Counts> counted_;  ///< Of batches, what was done of them.
-  std::map<TaskKind, Counts> all_;      ///< Of all batches.
+  std::map<TaskName, Counts> counted_;  ///< What was done of each batch.
+  std::map<TaskKind, Counts> all_;      ///< What was done of all batches.
 };
 
 }  // namespace ptin

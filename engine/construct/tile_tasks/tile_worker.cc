@@ -18,21 +18,16 @@ void append(std::vector<BoundsRaise>& to, std::span<const BoundsRaise> raises) {
   to.insert(to.end(), raises.begin(), raises.end());
 }
 
-void tell(const Task& task, std::uint64_t samples) {
-  if (task.progress) {
-    task.progress(samples);
-  }
-}
-
 std::string path_of(const TaskSetup& setup, const TileId& tile, TileFile file) {
   return setup.folder + "/" + file_name(tile, file);
 }
 
-/// Writes segments: their pages into one file, what is told of them into another.
+/// Writes segments: their pages into one file, what is reported of them into another.
 class SegmentFiles {
  public:
   SegmentFiles(const TaskSetup& setup, const TileId& tile)
       : packer_(setup.packer),
+        syncs_(setup.syncs),
         pages_(setup.files, path_of(setup, tile, TileFile::kPages)),
         descriptions_(setup.files, path_of(setup, tile, TileFile::kDescriptions)) {}
 
@@ -40,14 +35,23 @@ class SegmentFiles {
     const PreparedSegment segment = packer_.prepare(records);
     page_bytes_ += segment.pages.size();
     pages_.put(segment.pages);
-    descriptions_.put(segment.description);
+    descriptions_.values(segment);
   }
-  [[nodiscard]] ArrayFileWriter& pages() noexcept { return pages_; }
-  [[nodiscard]] ArrayFileWriter& descriptions() noexcept { return descriptions_; }
-  [[nodiscard]] std::uint64_t page_bytes() const noexcept { return page_bytes_; }
+  /// Tells in `result` what was written.
+  void finish(TaskResult& result) {
+    for (const auto& [file, kind] : {std::pair(&pages_, TileFile::kPages),
+                                     std::pair(&descriptions_, TileFile::kDescriptions)}) {
+      if (syncs_) {
+        file->sync();
+      }
+      result.facts(kind) = file->finish();
+    }
+    result.page_bytes = page_bytes_;
+  }
 
  private:
   const SegmentPacker& packer_;
+  bool syncs_;
   ArrayFileWriter pages_, descriptions_;
   std::uint64_t page_bytes_ = 0;
 };
@@ -159,7 +163,7 @@ TaskResult TileWorker::collapse(const Task& task) {
     result.lone_samples += leaf.lone_samples;
     leaf.records = {};
     leaves.push_back(std::move(leaf));
-    tell(task, samples += setup_.tree.window(id).samples());
+    task.tell(samples += setup_.tree.window(id).samples());
   }
   put_back(std::move(start));
   if (top.level == 0) {
@@ -170,9 +174,7 @@ TaskResult TileWorker::collapse(const Task& task) {
     segments.add(group.records);
     write_pushed_of(top, group.pushed, result);
   }
-  finish(segments.pages(), result.facts(TileFile::kPages));
-  finish(segments.descriptions(), result.facts(TileFile::kDescriptions));
-  result.page_bytes = segments.page_bytes();
+  segments.finish(result);
   return result;
 }
 
@@ -218,7 +220,7 @@ TaskResult TileWorker::tighten(const Task& task) {
     stop_if_asked(task.stop, "the build");
     const SampleRange window = setup_.tree.window(leaf);
     replay_over_leaf(chain, *t0, start(window));
-    tell(task, samples += window.samples());
+    task.tell(samples += window.samples());
   }
   put_back(std::move(start));
   for (std::size_t i = 0; i < above.size(); ++i) {
@@ -264,9 +266,7 @@ TaskResult TileWorker::close(const Task& task) {
   use_input(task.inputs.front(), [&] { segment->require_undamaged(); });
   SegmentFiles packed(setup_, id);
   packed.add(records);
-  finish(packed.pages(), result.facts(TileFile::kPages));
-  finish(packed.descriptions(), result.facts(TileFile::kDescriptions));
-  result.page_bytes = packed.page_bytes();
+  packed.finish(result);
   return result;
 }
 

@@ -27,7 +27,7 @@ struct TaskSetup {
   std::function<LeafStarter()> make_starter;  ///< Called once for each task that runs at once.
   const SegmentPacker& packer;
   FileLayer& files;
-  std::string folder;  ///< Of the tasks' files.
+  std::string folder;  ///< Folder of the tasks' files.
   /// Makes files durable before a task is done: for workers whose files another process syncs in
   /// vain, since they are in the cache of another machine.
   bool syncs = false;

@@ -13,7 +13,7 @@ namespace ptin {
 
 /// Counts the faults of a border against itself: vertices inside of border edges (T-junctions), and
 /// pairs of border edges that cross.
-/// @param positions  Of the vertices, by id.
+/// @param positions  Positions of the vertices, by id.
 /// @param faults     Its t_junctions and crossings grow.
 /// Cost: O(b log^2 b + pairs of edges whose boxes meet) for b edges.
 void check_border(std::span<const GridPoint> positions, std::span<const BorderEdge> border,
@@ -21,8 +21,8 @@ void check_border(std::span<const GridPoint> positions, std::span<const BorderEd
 
 /// The triangles that fill the convex hull around and between surface triangles: those faces of a
 /// constrained Delaunay triangulation of the border's vertices, with the border's edges kept, that
-/// the surface does not cover. How often it covers a face, the winding number of the border tells.
-/// @param positions  Of the vertices, by id.
+/// the surface does not cover. The winding number of the border says how often it covers a face.
+/// @param positions  Positions of the vertices, by id.
 /// @param border     In ascending order of (from, to).
 /// @param faults     Its `covered` counts the faces that are covered more than once.
 /// @return  Ids of the corners, counter-clockwise from the smallest; in ascending order.

@@ -10,21 +10,17 @@
 
 namespace ptin {
 
-/// The plain values of a TIN on disk.
-struct TinTriangles::Kept {
-  TinCounts counts;
-  std::array<std::uint64_t, 3> records;  ///< Surface, voids, places.
-  std::uint64_t codes_are_whole;
-};
-
 namespace {
 
-/// Opens a file that another process kept, with the checksums that its index has next.
+/// Opens a file that another process kept, of which its index tells the size and the checksums next.
 template <class Record>
 std::unique_ptr<RecordFile<Record>> taken_up(FileLayer& files, const std::string& path,
-                                             std::uint64_t records, ArrayFileReader& index) {
+                                             ArrayFileReader& index) {
+  std::uint64_t records = 0;
+  std::vector<std::uint64_t> checksums;
+  index.values(records, checksums);
   auto file = std::make_unique<RecordFile<Record>>(files, path, ScratchFile::Kept::kExisting);
-  file->take_up(path, records, index.take_copy<std::uint64_t>());
+  file->take_up(path, records, std::move(checksums));
   return file;
 }
 
@@ -38,17 +34,10 @@ ArrayFileFacts TinTriangles::save(FileLayer& files, const std::string& index) {
   surface_->sync();
   voids_->sync();
   places_->sync();
-  const Kept kept{
-      counts_, {surface_->size(), voids_->size(), places_->size()}, codes_are_whole_ ? 1U : 0U};
   ArrayFileWriter file(files, index);
-  file.put(std::span(&kept, 1));
-  put_frame(file, frame_);
-  put_warnings(file, warnings_);
-  file.put(hull_.corners());
-  for (const std::vector<std::uint64_t>* checksums :
-       {&surface_->checksums(), &voids_->checksums(), &places_->checksums()}) {
-    file.put(*checksums);
-  }
+  file.values(counts_, codes_are_whole_, frame_, warnings_, hull_.corners());
+  file.values(surface_->size(), surface_->checksums(), voids_->size(), voids_->checksums(),
+              places_->size(), places_->checksums());
   file.sync();
   return file.finish();
 }
@@ -56,17 +45,14 @@ ArrayFileFacts TinTriangles::save(FileLayer& files, const std::string& index) {
 TinTriangles TinTriangles::load(FileLayer& files, const std::string& kept_as,
                                 const std::string& index, const ArrayFileFacts& facts) {
   ArrayFileReader file(index, facts);
-  const Kept kept = file.take<Kept>()[0];
   TinTriangles tin;
-  tin.counts_ = kept.counts;
-  tin.codes_are_whole_ = kept.codes_are_whole != 0;
-  tin.frame_ = take_frame(file);
-  tin.warnings_ = take_warnings(file);
-  tin.hull_ = ConvexHull(file.take_copy<GridPoint>());
+  std::vector<GridPoint> hull;
+  file.values(tin.counts_, tin.codes_are_whole_, tin.frame_, tin.warnings_, hull);
+  tin.hull_ = ConvexHull(std::move(hull));
   const std::array<std::string, 3> names = kept_files(kept_as);
-  tin.surface_ = taken_up<GridTriangle>(files, names[0], kept.records[0], file);
-  tin.voids_ = taken_up<GridTriangle>(files, names[1], kept.records[1], file);
-  tin.places_ = taken_up<std::uint64_t>(files, names[2], kept.records[2], file);
+  tin.surface_ = taken_up<GridTriangle>(files, names[0], file);
+  tin.voids_ = taken_up<GridTriangle>(files, names[1], file);
+  tin.places_ = taken_up<std::uint64_t>(files, names[2], file);
   return tin;
 }
 

@@ -22,13 +22,13 @@ struct SliverFlips {
 
 /// Mends slivers: triangles that were counter-clockwise before their corners were snapped to the
 /// grid, and are not any more. A sliver with two corners on one place is removed, and so is a
-/// sliver whose longest edge lies on the border. Of any other sliver the longest edge is flipped; a
+/// sliver whose longest edge lies on the border. The longest edge of any other sliver is flipped; a
 /// triangle that the flip makes and that is bad too is mended in the same way. After 64 steps for
 /// each sliver that was given the rest of them stay in `triangles`.
-/// @param positions    Of the vertices, by id.
+/// @param positions    Positions of the vertices, by id.
 /// @param triangles    A part of a mesh. Removing triangles changes the indices of others.
 /// @param slivers      Indices into `triangles`.
-/// @param is_complete  Beside `positions`: 1 where all triangles of the mesh at a vertex are given.
+/// @param is_complete  By `positions`: 1 where all triangles of the mesh at a vertex are given.
 /// Cost: O(n) expected for n triangles when there is a sliver, else nothing.
 [[nodiscard]] SliverFlips flip_slivers(std::span<const GridPoint> positions,
                                        std::vector<Corners>& triangles,

@@ -21,7 +21,7 @@ void BorderFinder::add(const GridTriangle& t) {
 /// Takes out the edges that have one triangle on each side. The others go to the sorter: triangles
 /// of other pieces may lie beside them.
 void BorderFinder::clear_piece() {
-  std::sort(piece_.begin(), piece_.end(), ByEnds());
+  std::sort(piece_.begin(), piece_.end());
   for (std::size_t first = 0; first < piece_.size();) {
     std::size_t end = first + 1;
     while (end < piece_.size() && piece_[end].low == piece_[first].low &&
@@ -44,7 +44,7 @@ TinBorder border_in_memory(std::span<const GridEdge> edges) {
   for (const GridEdge& e : edges) {  // each vertex of a border is where some edge begins
     vertices.push_back(e.from);
   }
-  // Of vertices that share a position the lowest stays.
+  // The lowest of several vertices at one position stays.
   std::sort(vertices.begin(), vertices.end(), [](const GridVertex& a, const GridVertex& b) {
     return std::pair(key_of(a.position), a.height) < std::pair(key_of(b.position), b.height);
   });

@@ -20,7 +20,7 @@ struct GridEdge {
 /// A border in memory: vertices in the order of their keys, edges in that of (from, to).
 struct TinBorder {
   std::vector<GridPoint> positions;
-  std::vector<double> heights;  ///< Beside `positions`.
+  std::vector<double> heights;  ///< One for each of `positions`.
   std::vector<BorderEdge> edges;
 };
 
@@ -68,9 +68,8 @@ class BorderFinder {
     VertexKey low = kNoVertexKey, high = kNoVertexKey;
     double low_height = 0.0, high_height = 0.0;
     std::uint32_t is_reversed = 0;  ///< 1: its triangle has it from high to low.
-  };
-  struct ByEnds {
-    bool operator()(const Side& a, const Side& b) const noexcept {
+
+    friend bool operator<(const Side& a, const Side& b) noexcept {
       return a.low != b.low     ? a.low < b.low
              : a.high != b.high ? a.high < b.high
                                 : a.is_reversed < b.is_reversed;
@@ -98,7 +97,7 @@ class BorderFinder {
   void clear_piece();
 
   std::vector<Side> piece_;
-  ExternalSorter<Side, ByEnds> edges_;
+  ExternalSorter<Side> edges_;
 };
 
 /// Numbers the vertices of a border, and names its edges by these numbers. Where vertices share a

@@ -25,7 +25,7 @@ class FaultReport {
     text_ += (text_.empty() ? "" : "; ") + std::to_string(fault.count) + " " +
              (fault.count == 1 ? one : many) + place;
   }
-  /// @param turned_in_source  As in TinFaults. They tell where a surface is folded.
+  /// @param turned_in_source  As in TinFaults. They show where a surface is folded.
   void throw_if_any(std::uint64_t turned_in_source) {
     if (!text_.empty()) {
       if (turned_in_source > 0) {

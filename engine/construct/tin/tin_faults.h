@@ -48,7 +48,7 @@ struct TinFaults {
   TinFault covered;       ///< Pieces of the plane that are covered more than once.
 
   /// @param map   From the grid to the CRS, for the places in the message.
-  /// @param path  Of the TIN, for the message.
+  /// @param path  Path of the TIN, for the message.
   /// @throws Error invalid_argument  there is a fault; the message counts each kind and names its
   ///                                 first place
   void refuse(const AffineMap& map, const std::string& path) const;

@@ -25,7 +25,7 @@ using KeySet = std::unordered_set<VertexKey>;
 struct Patch {
   std::vector<GridVertex> vertices;       ///< In the order of their keys.
   std::vector<GridPoint> positions;       ///< Those of `vertices`.
-  std::vector<std::uint8_t> is_complete;  ///< Beside `vertices`: 1 where all triangles are here.
+  std::vector<std::uint8_t> is_complete;  ///< 1 for vertices all of whose triangles are here.
   std::vector<Corners> triangles;
 
   [[nodiscard]] VertexId number(VertexKey key) const { return vertex_number(vertices, key); }
@@ -81,20 +81,11 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
       stop);
   require_fit(around, memory, path);
   Patch patch;
-  for (const GridTriangle& t : found) {
-    patch.vertices.insert(patch.vertices.end(), t.corners.begin(), t.corners.end());
-  }
-  const auto key = [](const GridVertex& v) { return key_of(v.position); };
-  std::sort(patch.vertices.begin(), patch.vertices.end(),
-            [&](const GridVertex& a, const GridVertex& b) { return key(a) < key(b); });
-  patch.vertices.erase(
-      std::unique(patch.vertices.begin(), patch.vertices.end(),
-                  [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
-      patch.vertices.end());
+  patch.vertices = vertices_of(found);
   patch.vertices.shrink_to_fit();
   for (const GridVertex& v : patch.vertices) {
     patch.positions.push_back(v.position);
-    patch.is_complete.push_back(wanted.contains(key(v)) ? 1 : 0);
+    patch.is_complete.push_back(wanted.contains(key_of(v.position)) ? 1 : 0);
   }
   for (const GridTriangle& t : found) {
     patch.triangles.push_back(patch.numbers(t));
@@ -102,7 +93,7 @@ Patch patch_around(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
   return patch;
 }
 
-/// The mesh with `patch`, in the order of ByPlace, in the place of the triangles with a corner in
+/// The mesh with `patch`, which is sorted as it is, in the place of the triangles with a corner in
 /// `wanted`.
 RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const KeySet& wanted,
                                   const std::vector<GridTriangle>& patch,
@@ -110,7 +101,7 @@ RecordFile<GridTriangle> replaced(const RecordFile<GridTriangle>& mesh, const Ke
   RecordFile<GridTriangle> to(memory, "triangles");
   std::size_t next = 0;
   const auto add_before = [&](const GridTriangle* t) {
-    for (; next < patch.size() && (t == nullptr || ByPlace()(patch[next], *t)); ++next) {
+    for (; next < patch.size() && (t == nullptr || patch[next] < *t); ++next) {
       to.add(patch[next]);
     }
   };
@@ -211,7 +202,7 @@ std::uint64_t mend_slivers(MeshOnDisk& mesh, const std::vector<GridTriangle>& sl
       (area == 0 ? faults.no_area : faults.turned_over).add(mended.back().corners[0].position);
     }
   }
-  std::sort(mended.begin(), mended.end(), ByPlace());
+  std::sort(mended.begin(), mended.end());
   mesh.triangles = replaced(mesh.triangles, wanted, mended, memory, stop);
   drop_lone(mesh.places, patch, order, memory, stop);
   return flips.mended;

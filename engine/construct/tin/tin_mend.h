@@ -16,7 +16,7 @@ class PointOrder;
 
 /// A mesh on disk. Its triangles are counter-clockwise but for slivers and faults.
 struct MeshOnDisk {
-  RecordFile<GridTriangle> triangles;  ///< In the order of ByPlace.
+  RecordFile<GridTriangle> triangles;  ///< Ascending.
   RecordFile<std::uint64_t> places;    ///< Of their vertices along the curve, ascending.
 };
 
@@ -25,7 +25,7 @@ struct MeshOnDisk {
 /// disk. Vertices that lose all their triangles go.
 /// @param slivers  Triangles of `mesh` that snapping spoiled.
 /// @param faults   Its no_area and turned_over count those that could not be mended.
-/// @param path     Of the TIN, for errors.
+/// @param path     Path of the TIN, for errors.
 /// @return  How many bad triangles were taken away: slivers, and what flips made.
 /// @throws Error resource_exhausted  the patch has more than 2^20 triangles, or takes more than
 ///                                   memory.bytes at 256 bytes a triangle

@@ -10,23 +10,11 @@ namespace {
 
 std::uint64_t face_of(std::uint64_t place) { return place / 4; }
 
-struct ById {
-  bool operator()(const NamedVertex& a, const NamedVertex& b) const noexcept { return a.id < b.id; }
-};
-struct ByName {
-  bool operator()(const NamedCorner& a, const NamedCorner& b) const noexcept {
-    return a.id != b.id ? a.id < b.id : a.place < b.place;
-  }
-};
 struct ByFace {
   bool operator()(const NamedCorner& a, const NamedCorner& b) const noexcept {
     return a.place < b.place;
   }
 };
-
-using VertexSorter = ExternalSorter<NamedVertex, ById>;
-using NameSorter = ExternalSorter<NamedCorner, ByName>;
-using NumberSorter = ExternalSorter<std::uint64_t, std::less<>>;
 
 /// What the reader finds, to be sorted.
 class NameSink final : public TinFileSink {
@@ -44,8 +32,8 @@ class NameSink final : public TinFileSink {
     ++faces_;
   }
 
-  VertexSorter vertices;
-  NameSorter corners;
+  ExternalSorter<NamedVertex> vertices;
+  ExternalSorter<NamedCorner> corners;
 
  private:
   std::uint64_t faces_ = 0;
@@ -86,7 +74,7 @@ class NameReader {
   const TinGridReading& reading_;
   const ExternalMemory& memory_;
   NamedTin tin_;
-  NumberSorter without_height_;  ///< The places of corners without a height.
+  ExternalSorter<std::uint64_t> without_height_;  ///< The places of corners without a height.
 };
 
 /// Finds the vertex of every corner: both are sorted by id and merged. Keeps the vertices that a
@@ -137,7 +125,7 @@ void NameReader::match() {
 void NameReader::leave_out_triangles() {
   ExternalSorter<NamedCorner, ByFace> by_face(memory_, "corners", reading_.stop);
   tin_.corners.visit([&](const NamedCorner& c) { by_face.add(c); }, reading_.stop);
-  NameSorter kept(memory_, "corners", reading_.stop);
+  ExternalSorter<NamedCorner> kept(memory_, "corners", reading_.stop);
   InOrder out = in_order(without_height_, reading_.stop);
   std::vector<NamedCorner> face;  // that have heights
   std::size_t corners = 0;
@@ -169,14 +157,7 @@ void NameReader::leave_out_triangles() {
       reading_.stop);
   end_face();
   tin_.corners = RecordFile<NamedCorner>(memory_, "corners");
-  kept.merge(
-      [&](std::span<const NamedCorner> batch) {
-        for (const NamedCorner& c : batch) {
-          tin_.corners.add(c);
-        }
-      },
-      reading_.stop);
-  tin_.corners.finish();
+  write_in_order(kept, tin_.corners, reading_.stop);
 }
 
 /// Drops the vertices that only triangles without a height named.

@@ -5,9 +5,11 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -68,6 +70,20 @@ template <class Record>
       });
 }
 
+/// Adds the records of a sorter to a file, in ascending order, and finishes it.
+template <class Record, class Before>
+void write_in_order(ExternalSorter<Record, Before>& sorter, RecordFile<Record>& to,
+                    const std::stop_token& stop) {
+  sorter.merge(
+      [&](std::span<const Record> batch) {
+        for (const Record& record : batch) {
+          to.add(record);
+        }
+      },
+      stop);
+  to.finish();
+}
+
 /// A vertex as the file has it, in 40 bytes.
 struct NamedVertex {
   std::int64_t id = 0;
@@ -83,12 +99,14 @@ struct NamedVertex {
   [[nodiscard]] SourcePoint point() const noexcept {
     return {{mantissa[0], decimals[0]}, {mantissa[1], decimals[1]}, {mantissa[2], decimals[2]}};
   }
+  friend bool operator<(const NamedVertex& a, const NamedVertex& b) noexcept { return a.id < b.id; }
 };
 
 /// A corner of a face, which names its vertex.
 struct NamedCorner {
-  std::int64_t id = 0;      ///< Of the vertex.
+  std::int64_t id = 0;      ///< The vertex's id.
   std::uint64_t place = 0;  ///< 4 f + c for corner c (0 to 3) of face f of the file.
+  friend auto operator<=>(const NamedCorner&, const NamedCorner&) = default;
 };
 
 /// A file's terrain: triangles and quads whose corners all have a height, and the vertices that they

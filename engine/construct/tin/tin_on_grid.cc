@@ -25,14 +25,11 @@ struct JoinedCorner {
   std::uint64_t place = 0;  ///< As NamedCorner::place.
   GridVertex vertex;
   float off_x = 0.0F, off_y = 0.0F;  ///< Its place in the file less that on the grid, grid units.
-};
-struct ByCorner {
-  bool operator()(const JoinedCorner& a, const JoinedCorner& b) const noexcept {
+
+  friend bool operator<(const JoinedCorner& a, const JoinedCorner& b) noexcept {
     return a.place < b.place;
   }
 };
-
-using CornerSorter = ExternalSorter<JoinedCorner, ByCorner>;
 
 /// Twice the area that a triangle has in the file, in grid units. Its sign is right but for the
 /// flattest of triangles.
@@ -100,7 +97,7 @@ std::size_t begin_of_cut(const Quad& quad) {
 
 /// Turns triangles that are clockwise in their file, and collects what is wrong with them. Programs
 /// write some triangles the one way round and some the other; what comes out is a terrain where they
-/// lie beside one another, and the border tells where they do not.
+/// lie beside one another, and the border shows where they do not.
 class Orientations {
  public:
   /// Returns `t` as it is to be.
@@ -161,8 +158,8 @@ class GridReader {
   TinOnGrid tin_;
   std::optional<PointOrder> order_;
   std::optional<NamedTin> named_;
-  std::unique_ptr<CornerSorter> corners_;
-  std::unique_ptr<PointSorter> points_;  ///< The vertices.
+  std::unique_ptr<ExternalSorter<JoinedCorner>> corners_;
+  std::unique_ptr<ExternalSorter<KeyedHeight>> points_;  ///< The vertices.
 };
 
 void GridReader::choose_grid() {
@@ -189,8 +186,8 @@ JoinedCorner GridReader::snapped(const NamedVertex& v) {
 
 /// Gives every corner its vertex.
 void GridReader::join() {
-  corners_ = std::make_unique<CornerSorter>(memory_, "corners", reading_.stop);
-  points_ = std::make_unique<PointSorter>(memory_, "points", reading_.stop);
+  corners_ = std::make_unique<ExternalSorter<JoinedCorner>>(memory_, "corners", reading_.stop);
+  points_ = std::make_unique<ExternalSorter<KeyedHeight>>(memory_, "points", reading_.stop);
   InOrder names = in_order(named_->corners, reading_.stop);
   named_->vertices.visit(
       [&](const NamedVertex& v) {
@@ -207,7 +204,8 @@ void GridReader::join() {
 
 /// Puts corners together to triangles, and cuts quads.
 void GridReader::assemble() {
-  tin_.triangles = std::make_unique<TriangleSorter>(memory_, "triangles", reading_.stop);
+  tin_.triangles =
+      std::make_unique<ExternalSorter<GridTriangle>>(memory_, "triangles", reading_.stop);
   Orientations orientations;
   std::vector<JoinedCorner> face;
   const auto add = [&](const std::array<JoinedCorner, 3>& c) {
@@ -314,13 +312,29 @@ GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
   return t;
 }
 
-bool ByPlace::operator()(const GridTriangle& a, const GridTriangle& b) const noexcept {
+bool operator<(const GridTriangle& a, const GridTriangle& b) noexcept {
   const auto key = [](const GridTriangle& t, std::size_t i) {
     return key_of(t.corners[i].position);
   };
   return a.place != b.place       ? a.place < b.place
          : key(a, 1) != key(b, 1) ? key(a, 1) < key(b, 1)
                                   : key(a, 2) < key(b, 2);
+}
+
+std::vector<GridVertex> vertices_of(std::span<const GridTriangle> triangles) {
+  std::vector<GridVertex> vertices;
+  vertices.reserve(3 * triangles.size());
+  for (const GridTriangle& t : triangles) {
+    vertices.insert(vertices.end(), t.corners.begin(), t.corners.end());
+  }
+  const auto key = [](const GridVertex& v) { return key_of(v.position); };
+  std::sort(vertices.begin(), vertices.end(),
+            [&](const GridVertex& a, const GridVertex& b) { return key(a) < key(b); });
+  vertices.erase(
+      std::unique(vertices.begin(), vertices.end(),
+                  [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
+      vertices.end());
+  return vertices;
 }
 
 TinOnGrid read_on_grid(const std::string& path, const TinGridReading& reading) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/grid_vertex.h"
 #include "engine/construct/grid/height_fit.h"
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
@@ -25,22 +26,18 @@
 
 namespace ptin {
 
-/// A vertex on the grid. Its height is as PointGrid::height() has it.
-struct GridVertex {
-  GridPoint position;
-  double height = 0.0;
-};
-
 /// The index of the vertex with this key among vertices in the order of their keys.
 /// REQUIRES: there is such a vertex. Cost: O(log n).
 [[nodiscard]] VertexId vertex_number(std::span<const GridVertex> vertices, VertexKey key) noexcept;
 
 /// A triangle that holds its corners, so that it needs no list of vertices.
 struct GridTriangle {
-  std::uint64_t place = 0;            ///< Of the first corner, along the curve (PointOrder).
+  std::uint64_t place = 0;            ///< Place of the first corner along the curve (PointOrder).
   std::array<GridVertex, 3> corners;  ///< In turn, from the one with the smallest key on.
 
   [[nodiscard]] std::int64_t area() const noexcept;  ///< orient() of its corners: twice the area.
+  /// Along the curve: by the place of the first corner, then by the keys of the second and the third.
+  friend bool operator<(const GridTriangle& a, const GridTriangle& b) noexcept;
 };
 
 class PointOrder;
@@ -49,12 +46,8 @@ class PointOrder;
 [[nodiscard]] GridTriangle grid_triangle(const std::array<GridVertex, 3>& corners,
                                          const PointOrder& order) noexcept;
 
-/// The order of triangles along the curve: by the place of the first corner, then by the keys of
-/// the second and the third.
-struct ByPlace {
-  bool operator()(const GridTriangle& a, const GridTriangle& b) const noexcept;
-};
-using TriangleSorter = ExternalSorter<GridTriangle, ByPlace>;
+/// The vertices of triangles, each once, in the order of their keys. Cost: O(n log n).
+[[nodiscard]] std::vector<GridVertex> vertices_of(std::span<const GridTriangle> triangles);
 
 /// Triangles that are wrong by themselves.
 struct OrientationFaults {
@@ -73,7 +66,7 @@ struct TinOnGrid {
   SourceWarnings warnings;
   HeightFit heights;
   /// Counter-clockwise, those that are clockwise in the file turned; but for slivers.
-  std::unique_ptr<TriangleSorter> triangles;
+  std::unique_ptr<ExternalSorter<GridTriangle>> triangles;
   /// Distinct positions of the vertices of triangles, along the curve.
   std::unique_ptr<RecordFile<std::uint64_t>> places;
   std::uint64_t turned_triangles = 0;  ///< Those that went round unlike most.

@@ -13,6 +13,7 @@
 #include "engine/construct/tin/hull_delaunay.h"
 #include "engine/construct/tin/tin_border.h"
 #include "engine/construct/tin/tin_mend.h"
+#include "engine/construct/tin/tin_names.h"
 #include "engine/construct/tin/void_sweep.h"
 #include "engine/error.h"
 #include "engine/mesh/link.h"
@@ -48,15 +49,8 @@ MeshOnDisk mesh_of(TinOnGrid& tin, const PointOrder& order, const ExternalMemory
   // Triangles that are still to be mended are written again.
   const bool is_final = tin.faults.slivers.empty();
   MeshOnDisk mesh{new_file<GridTriangle>(memory, is_final ? kept_as : ""), std::move(*tin.places)};
-  tin.triangles->merge(
-      [&](std::span<const GridTriangle> batch) {
-        for (const GridTriangle& t : batch) {
-          mesh.triangles.add(t);
-        }
-      },
-      stop);
+  write_in_order(*tin.triangles, mesh.triangles, stop);
   tin.triangles.reset();
-  mesh.triangles.finish();
   std::vector<GridTriangle>& slivers = tin.faults.slivers;
   if (tin.faults.more_slivers > 0) {
     throw Error(ErrorCode::resource_exhausted,
@@ -97,14 +91,7 @@ class HullFiller {
           border_, memory_, [&](const auto& corners) { add(corners); }, faults_, path_, stop_);
       faults_.refuse(map_, path_);
     }
-    voids_.merge(
-        [&](std::span<const GridTriangle> batch) {
-          for (const GridTriangle& t : batch) {
-            to.add(t);
-          }
-        },
-        stop_);
-    to.finish();
+    write_in_order(voids_, to, stop_);
     return hull_.hull();
   }
 
@@ -120,7 +107,7 @@ class HullFiller {
         },
         stop_);
     border_.finish();
-    // Where triangles are wrong by themselves, faults of the border would tell nothing more.
+    // Where triangles are wrong by themselves, faults of the border would say nothing more.
     faults_.refuse(map_, path_);
   }
 
@@ -159,7 +146,7 @@ class HullFiller {
   const std::stop_token& stop_;
   const PointOrder& order_;
   RecordFile<GridEdge> border_;
-  TriangleSorter voids_;
+  ExternalSorter<GridTriangle> voids_;
   HullCollector hull_;
 };
 
@@ -175,23 +162,6 @@ std::uint64_t first_from(const RecordFile<GridTriangle>& triangles, std::uint64_
     }
   }
   return low;
-}
-
-/// The vertices of triangles, each once, in the order of their keys.
-std::vector<GridVertex> vertices_of(const std::vector<GridTriangle>& triangles) {
-  std::vector<GridVertex> vertices;
-  vertices.reserve(3 * triangles.size());
-  for (const GridTriangle& t : triangles) {
-    vertices.insert(vertices.end(), t.corners.begin(), t.corners.end());
-  }
-  const auto key = [](const GridVertex& v) { return key_of(v.position); };
-  std::sort(vertices.begin(), vertices.end(),
-            [&](const GridVertex& a, const GridVertex& b) { return key(a) < key(b); });
-  vertices.erase(
-      std::unique(vertices.begin(), vertices.end(),
-                  [&](const GridVertex& a, const GridVertex& b) { return key(a) == key(b); }),
-      vertices.end());
-  return vertices;
 }
 
 }  // namespace

@@ -109,7 +109,6 @@ class TinTriangles {
   static constexpr std::uint64_t kMostBorderInMemory = std::uint64_t{1} << 16;
 
  private:
-  struct Kept;
   TinTriangles() = default;
   [[nodiscard]] std::uint64_t place_of_part(std::uint64_t i, std::uint64_t n) const;
   void take(const RecordFile<GridTriangle>& from, std::uint64_t begin, std::uint64_t end,
@@ -121,7 +120,7 @@ class TinTriangles {
   ConvexHull hull_;
   bool codes_are_whole_ = false;
   std::unique_ptr<RecordFile<GridTriangle>> surface_, voids_;
-  std::unique_ptr<RecordFile<std::uint64_t>> places_;  ///< Of all vertices, along the curve.
+  std::unique_ptr<RecordFile<std::uint64_t>> places_;  ///< Places of all vertices along the curve.
 };
 
 }  // namespace ptin

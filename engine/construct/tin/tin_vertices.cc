@@ -7,7 +7,6 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/scratch/record_file.h"
-#include "engine/construct/tin/tin_names.h"
 #include "storage/file/file_questions.h"
 
 namespace ptin {
@@ -27,12 +26,6 @@ ExternalMemory memory_of(const StreamResources& resources) {
 
 }  // namespace
 
-class TinVertices::Vertices {
- public:
-  explicit Vertices(RecordFile<NamedVertex> named) : records(std::move(named)) {}
-  RecordFile<NamedVertex> records;
-};
-
 TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
                          std::optional<double> nodata, const StreamResources& resources) {
   SourceOptions options;
@@ -50,17 +43,13 @@ TinVertices::TinVertices(const std::string& path, const PointChoice& choice,
   facts_.units = tin.facts.units;
   warnings_ = tin.facts.warnings;
   left_out_.add(LeftOutReason::kNoTriangle, tin.unused_vertices);
-  vertices_ = std::make_unique<const Vertices>(std::move(tin.vertices));
+  vertices_.emplace(std::move(tin.vertices));
 }
-
-TinVertices::~TinVertices() = default;
-
-std::uint64_t TinVertices::total() const noexcept { return vertices_->records.size(); }
 
 bool TinVertices::next(std::vector<SourcePoint>& batch) {
   constexpr std::uint64_t kBatchPoints = 4096;
   std::vector<NamedVertex> vertices;
-  vertices_->records.take(next_, std::min(kBatchPoints, total() - next_), vertices);
+  vertices_->take(next_, std::min(kBatchPoints, total() - next_), vertices);
   next_ += vertices.size();
   batch.clear();
   for (const NamedVertex& v : vertices) {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
+#include "engine/construct/tin/tin_names.h"
 
 namespace ptin {
 
@@ -27,7 +27,6 @@ class TinVertices final : public PointStream {
   ///               have; no triangle has a height; io_error, resource_exhausted, cancelled
   TinVertices(const std::string& path, const PointChoice& choice, std::optional<double> nodata = {},
               const StreamResources& resources = {});
-  ~TinVertices() override;
 
   /// The most bytes of disk that the constructor takes for a vertex: 40 for itself and 96 for six
   /// corners while they are sorted, as much for the same when they have been matched, and 96 more
@@ -42,12 +41,11 @@ class TinVertices final : public PointStream {
   [[nodiscard]] LeftOutPoints left_out() const noexcept override { return left_out_; }
   [[nodiscard]] SourceWarnings warnings() const override { return warnings_; }
   [[nodiscard]] std::uint64_t done() const noexcept override { return next_; }
-  [[nodiscard]] std::uint64_t total() const noexcept override;
+  [[nodiscard]] std::uint64_t total() const noexcept override { return vertices_->size(); }
 
  private:
-  class Vertices;  ///< On disk.
   PointStreamFacts facts_;
-  std::unique_ptr<const Vertices> vertices_;
+  std::optional<RecordFile<NamedVertex>> vertices_;  ///< On disk.
   std::uint64_t next_ = 0;
   LeftOutPoints left_out_;
   SourceWarnings warnings_;

@@ -17,6 +17,7 @@
 #include "engine/construct/tin/void_sweep.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -32,14 +33,12 @@ using Triangles = std::function<void(const std::array<GridVertex, 3>&)>;
 
 /// The line meets one end of a border edge.
 struct Event {
-  VertexKey at = 0, other = 0;  ///< Of this end and of the other one.
+  VertexKey at = 0, other = 0;  ///< Keys of this end and of the other one.
   double height = 0.0, other_height = 0.0;
   std::uint32_t is_upward = 0;  ///< 1: the edge goes from its lower to its upper end.
 
   [[nodiscard]] bool begins_edge() const noexcept { return at < other; }
-};
-struct ByKeys {
-  bool operator()(const Event& a, const Event& b) const noexcept {
+  friend bool operator<(const Event& a, const Event& b) noexcept {
     return a.at != b.at         ? a.at < b.at
            : a.other != b.other ? a.other < b.other
                                 : a.is_upward < b.is_upward;
@@ -180,23 +179,21 @@ struct ActiveEdge {
   mutable Gap right;  ///< Changes in the set, since the order does not look at it.
 };
 
-/// The order of edges on the line, from left to right. A point that lies on an edge equals it.
-struct LeftToRight {
-  using is_transparent = void;
-  static std::int64_t side(const ActiveEdge& e, GridPoint p) noexcept {
-    return orient(e.low.position, e.high.position, p);
+std::int64_t side(const ActiveEdge& e, GridPoint p) noexcept {
+  return orient(e.low.position, e.high.position, p);
+}
+
+// The order of edges on the line is from left to right. A point that lies on an edge equals it.
+bool operator<(const ActiveEdge& e, GridPoint p) noexcept { return side(e, p) < 0; }
+bool operator<(GridPoint p, const ActiveEdge& e) noexcept { return side(e, p) > 0; }
+bool operator<(const ActiveEdge& a, const ActiveEdge& b) noexcept {
+  if (key_of(a.low.position) <= key_of(b.low.position)) {
+    const std::int64_t at = side(a, b.low.position);
+    return at != 0 ? at < 0 : side(a, b.high.position) < 0;
   }
-  bool operator()(const ActiveEdge& e, GridPoint p) const noexcept { return side(e, p) < 0; }
-  bool operator()(GridPoint p, const ActiveEdge& e) const noexcept { return side(e, p) > 0; }
-  bool operator()(const ActiveEdge& a, const ActiveEdge& b) const noexcept {
-    if (key_of(a.low.position) <= key_of(b.low.position)) {
-      const std::int64_t at = side(a, b.low.position);
-      return at != 0 ? at < 0 : side(a, b.high.position) < 0;
-    }
-    const std::int64_t at = side(b, a.low.position);
-    return at != 0 ? at > 0 : side(b, a.high.position) > 0;
-  }
-};
+  const std::int64_t at = side(b, a.low.position);
+  return at != 0 ? at > 0 : side(b, a.high.position) > 0;
+}
 
 class Sweep {
  public:
@@ -216,7 +213,7 @@ class Sweep {
 
  private:
   static constexpr std::uint64_t kBytes = 192;  ///< Counted for an edge, and for four nodes.
-  using Line = std::set<ActiveEdge, LeftToRight>;
+  using Line = std::set<ActiveEdge, std::less<>>;
 
   [[nodiscard]] Gap& left_of(Line::iterator edge) {
     return edge == line_.begin() ? outside_ : std::prev(edge)->right;
@@ -277,10 +274,8 @@ bool Sweep::cross(Line::iterator right_edge) {
   }
   const ActiveEdge &e = *std::prev(right_edge), &f = *right_edge;
   const auto sign = [](std::int64_t v) { return v > 0 ? 1 : (v < 0 ? -1 : 0); };
-  return sign(LeftToRight::side(e, f.low.position)) * sign(LeftToRight::side(e, f.high.position)) <
-             0 &&
-         sign(LeftToRight::side(f, e.low.position)) * sign(LeftToRight::side(f, e.high.position)) <
-             0;
+  return sign(side(e, f.low.position)) * sign(side(e, f.high.position)) < 0 &&
+         sign(side(f, e.low.position)) * sign(side(f, e.high.position)) < 0;
 }
 
 /// Puts the edges that begin at `v` on the line, before the edge `before`.
@@ -291,7 +286,7 @@ bool Sweep::begin_edges(const GridVertex& v, const std::vector<Event>& beginning
   for (const Event& e : beginning) {
     edges.push_back({v, {point_of(e.other), e.other_height}, e.is_upward != 0, {}});
   }
-  std::sort(edges.begin(), edges.end(), LeftToRight());
+  std::sort(edges.begin(), edges.end());
   int cover = left.cover;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     cover += edges[i].is_upward ? -1 : 1;  // the surface is on the left of an edge
@@ -354,8 +349,7 @@ bool Sweep::pass(const GridVertex& v, const std::vector<Event>& beginning) {
 void sweep_voids(const RecordFile<GridEdge>& border, const ExternalMemory& memory,
                  const std::function<void(const std::array<GridVertex, 3>&)>& visit,
                  TinFaults& faults, const std::string& path, const std::stop_token& stop) {
-  ExternalSorter<Event, ByKeys> events({memory.files, memory.folder, memory.bytes / 4}, "border",
-                                       stop);
+  ExternalSorter<Event> events({memory.files, memory.folder, memory.bytes / 4}, "border", stop);
   border.visit(
       [&](const GridEdge& e) {
         const VertexKey from = key_of(e.from.position), to = key_of(e.to.position);

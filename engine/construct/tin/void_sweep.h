@@ -26,7 +26,7 @@ namespace ptin {
 /// @param visit   Receives the void triangles, counter-clockwise, in no order that means anything.
 /// @param faults  Receives the first T-junction, crossing or doubly covered place that is met; the
 ///                work then ends, and the triangles so far mean nothing.
-/// @param path    Of the TIN, for errors.
+/// @param path    Path of the TIN, for errors.
 /// @throws Error cancelled, io_error; resource_exhausted  the line crosses more edges than fit, or
 ///               the disk is full; and what `visit` throws
 /// Cost: O(b log b) for b edges.

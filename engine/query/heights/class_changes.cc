@@ -13,8 +13,8 @@
 #include "engine/geometry/packed_boxes.h"
 #include "engine/mesh/link.h"
 #include "engine/mesh/triangle_holds.h"
-#include "engine/query/living/grid_cell.h"
 #include "engine/query/living/tin_parts.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
 
@@ -118,23 +118,19 @@ class ChangeCount {
         is_unbounded_(std::isinf(request.reach[0]) || std::isinf(request.reach[1])),
         reach_{steps_above(request.reach[0], terrain.store().facts().map.step_x),
                steps_above(request.reach[1], terrain.store().facts().map.step_y)},
-        level_(terrain, {{}, request.detail, half_of(request.limits)}),
-        finest_(terrain, {{}, {}, part_of(request.limits)}) {
+        level_(terrain, {{}, request.detail, request.limits.share(1, 2)}),
+        finest_(terrain, {{}, {}, request.limits.share(1, 2, kPartBytes)}) {
     if (request.region) region_.emplace(*request.region, terrain.store().facts().map);
   }
 
   ClassChanges run() {
     const StoreFacts& facts = terrain_.store().facts();
     if (facts.free_of_voids || level_.detail().certificate().complete) return changes_;
-    Tin* level = nullptr;
-    const auto fits = [&](const GridCell& cell, double) {
-      return !is_wanted(cell.box()) ||
-             (level = level_.part(grown(cell.box(), reach_, 2))) != nullptr;
-    };
-    walk_fitting_cells(facts.bounds, fits, [&](const GridCell& cell, double) {
-      if (!is_wanted(cell.box())) return;
-      if (cell.level == 0) level = level_.part(grown(cell.box(), reach_, 2));
-      count_in(cell, require(level));
+    work_on_cells(facts.bounds, [&](const GridCell& cell, double, double) {
+      if (!is_wanted(cell.box())) return true;
+      Tin* const level = level_.part_for(cell, grown(cell.box(), reach_, 2));
+      if (level != nullptr) count_in(cell, *level);
+      return level != nullptr;
     });
     changes_.cost.add_counts(level_.cost());
     changes_.cost.add_counts(finest_.cost());
@@ -142,27 +138,7 @@ class ChangeCount {
   }
 
  private:
-  static QueryLimits half_of(QueryLimits limits) {
-    limits.memory_bytes /= 2;
-    return limits;
-  }
-  static QueryLimits part_of(QueryLimits limits) {
-    limits.memory_bytes = std::min(limits.memory_bytes / 2, kPartBytes);
-    return limits;
-  }
   [[nodiscard]] bool is_wanted(const GridBox& box) const { return !region_ || region_->meets(box); }
-
-  /// @throws Error resource_exhausted when there is no part: one of a single position does not fit
-  [[nodiscard]] Tin& require(Tin* part) const {
-    if (part == nullptr) {
-      throw Error(
-          ErrorCode::resource_exhausted,
-          "what meets a single position of the grid takes more memory than a part may: give "
-          "more memory",
-          terrain_.store().path());
-    }
-    return *part;
-  }
 
   void count_in(const GridCell& cell, Tin& level) {
     link_tin(level);
@@ -172,14 +148,11 @@ class ChangeCount {
     const auto is_near = [&](const GridBox& box) {
       return (is_unbounded_ || any_meets(near, box)) && is_wanted(box);
     };
-    Tin* finest = nullptr;
-    const auto fits = [&](const GridCell& part, double) {
-      return !is_near(part.box()) || (finest = finest_.part(part.box())) != nullptr;
-    };
-    walk_fitting_cells(cell.box(), fits, [&](const GridCell& part, double) {
-      if (!is_near(part.box())) return;
-      if (part.level == 0) finest = finest_.part(part.box());
-      compare(part, require(finest), at_level);
+    work_on_cells(cell.box(), [&](const GridCell& part, double, double) {
+      if (!is_near(part.box())) return true;
+      const Tin* const finest = finest_.part_for(part, part.box());
+      if (finest != nullptr) compare(part, *finest, at_level);
+      return finest != nullptr;
     });
   }
 

@@ -23,7 +23,7 @@ struct ClassChangesRequest {
   /// How far along x and along y, in map units, the border between surface and void may be from
   /// that of the finest TIN, either way. What is farther from a border than that is not looked at.
   std::array<double, 2> reach{kInfinity, kInfinity};
-  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Of one part of the terrain.
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Limits of one part of the terrain.
 };
 
 /// Samples are the vertices of the finest TIN of the file. One with a surface triangle is surface,

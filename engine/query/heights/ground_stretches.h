@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/living/living_place.h"
+#include "engine/query/living/living_visitor.h"
 #include "engine/query/walk/spot_path.h"
 
 namespace ptin {
@@ -20,7 +20,7 @@ struct GroundStretch {
   bool is_point = false;
   bool is_vertex = false;                 ///< A point, and a corner of the triangle.
   double from = 0.0, to = 0.0;            ///< Shares of the way along the segment.
-  double from_code = 0.0, to_code = 0.0;  ///< Of the ground at both; set on surface.
+  double from_code = 0.0, to_code = 0.0;  ///< Ground at both ends; set on surface.
 };
 
 /// Gathers the stretches of the segments of a path. Threads: one owner.

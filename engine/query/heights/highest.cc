@@ -13,9 +13,8 @@
 
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
-#include "engine/query/heights/polygon_border.h"
-#include "engine/query/heights/window_clip.h"
-#include "engine/query/living/living_ties.h"
+#include "engine/query/heights/region_border.h"
+#include "engine/query/living/level_stars.h"
 #include "engine/query/select/detail.h"
 #include "storage/packed_rtree.h"
 
@@ -47,21 +46,20 @@ class HighestSearch final : private BestStarVisitor {
         request_(request),
         context_(request.limits, store_.path()),
         detail_(checked(request).detail, terrain.record_source(), context_),
-        ties_(detail_) {
+        stars_(store_, detail_) {
     filter_.box = facts_.bounds;
     if (request.region) {
       region_.emplace(*request.region, facts_.map);
       filter_.box = region_->bounds();
-      if (const auto* polygon = std::get_if<Polygon>(&*request.region)) {
-        border_.emplace(*polygon, facts_.map);
-      } else if (!std::holds_alternative<Window>(*request.region)) {
+      if (!std::holds_alternative<Window>(*request.region) &&
+          !std::holds_alternative<Polygon>(*request.region)) {
         throw Error(ErrorCode::invalid_argument,
                     "the highest point is that of a window or a polygon; a point or a segment has "
                     "no inside");
       }
+      border_.emplace(*request.region, facts_.map, facts_.bounds);
     }
     set_level(detail_, filter_);
-    window_ = window_on_grid();
   }
 
   HighestResult run() {
@@ -98,15 +96,16 @@ class HighestSearch final : private BestStarVisitor {
   }
 
   void search() {
-    visit_living(store_.t0(), detail_.level(), [&](const LivingTriangle& t) { take(t); });
+    const auto look = [&](const LivingTriangle& t) { look_at(t); };
+    stars_.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); }, is_surface, look);
     store_.star_index().search_stars_best_first(filter_, *this, cut_off(), context_.cost.io);
     // What was set aside raised no cut-off, so nothing was left out for its sake.
-    ties_.settle([&](const LivingTriangle& t) { look_at(t); });
+    stars_.settle(look);
   }
 
   /// The highest vertex of these stars, at the least key in their box.
   [[nodiscard]] Merit bound(const StarAttributes& a) const override {
-    if (is_empty(a.heights) || (border_ && !region_->meets(a.box))) {
+    if (is_empty(a.heights) || (region_ && !region_->meets(a.box))) {
       return kNoMerit;
     }
     return {request_.lowest ? -a.heights.lo : a.heights.hi, key_of({a.box.min_x, a.box.min_y})};
@@ -118,24 +117,12 @@ class HighestSearch final : private BestStarVisitor {
       const double last = best_.rbegin()->value;
       filter_.heights = request_.lowest ? Interval{-kInfinity, -last} : Interval{last, kInfinity};
     }
-    const auto take_it = [&](const LivingTriangle& t) { take(t); };
-    if (filter_.with_ties) {
-      stars_.clear();
-      context_.cost.records_examined += store_.read_stars(page, filter_, stars_, context_.cost.io);
-      context_.cost.stars_read += stars_.size();
-      ties_.note_fans(stars_);
-      visit_living(stars_, detail_, facts_.heights, take_it);
-    } else {
-      living_.clear();
-      context_.cost.records_examined +=
-          store_.read_living(page, filter_, living_, context_.cost.io);
-      context_.cost.stars_read += living_.stars.size();
-      visit_living(living_, facts_.heights, take_it);
-    }
-    context_.admit(
-        best_.size() * kBytesACandidate + ties_.bytes() +
-        stars_.splits.size() * sizeof(VertexSplit) + stars_.corners.size() * sizeof(RingCorner) +
-        living_.stars.size() * sizeof(LivingStar) + living_.corners.size() * sizeof(LivingCorner));
+    stars_.read(page, filter_, context_);
+    stars_.visit_page([&](const GridBox& box) { return meets(box, filter_.box); }, is_surface,
+                      [&](const LivingTriangle& t) { look_at(t); });
+    context_.admit(best_.size() * kBytesACandidate + stars_.bytes_aside() +
+                   stars_.living().stars.size() * sizeof(LivingStar) +
+                   stars_.living().corners.size() * sizeof(LivingCorner));
     return cut_off();
   }
 
@@ -146,11 +133,7 @@ class HighestSearch final : private BestStarVisitor {
                                            : Merit{-kInfinity, 0};
   }
 
-  void take(const LivingTriangle& t) {
-    if (!t.is_void && meets(box_of(t), filter_.box) && !ties_.set_aside(t)) {
-      look_at(t);
-    }
-  }
+  [[nodiscard]] static bool is_surface(const LivingTriangle& t) { return !t.is_void; }
 
   [[nodiscard]] double value_of(const LivingTriangle::Corner& c) const {
     const double code = facts_.heights.code(c.height);
@@ -182,47 +165,32 @@ class HighestSearch final : private BestStarVisitor {
     }
   }
 
-  /// Of equally high points takes the one farthest south, then farthest west.
+  /// Among equally high points the one farthest south counts, then farthest west.
   void look_at_border(const LivingTriangle& t) {
-    std::array<ClippedCorner, 3> corners;
+    std::array<ValuedPlace, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const GridPoint p = t.corner[i].position;
       corners[i] = {static_cast<double>(p.x), static_cast<double>(p.y), value_of(t.corner[i])};
     }
-    const auto is_before = [](const ClippedCorner& a, const ClippedCorner& b) {
+    const auto is_before = [](const ValuedPlace& a, const ValuedPlace& b) {
       return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     };
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
                 corners.end());
-    std::vector<ClippedCorner> shared;
-    if (border_) {
-      border_->visit_shared(corners, shared);
-    } else {
-      shared = clipped({corners.begin(), corners.end()}, window_);
-    }
-    for (const ClippedCorner& c : shared) {
+    std::vector<ValuedPlace> shared;
+    border_->visit_shared(corners, shared);
+    for (const ValuedPlace& c : shared) {
       if (c[2] > on_border_[2] || (c[2] == on_border_[2] && is_before(c, on_border_))) {
         on_border_ = c;
       }
     }
   }
 
-  [[nodiscard]] GridWindow window_on_grid() const {
-    if (request_.region) {
-      if (const auto* window = std::get_if<Window>(&*request_.region)) {
-        return on_grid(*window, facts_.map);
-      }
-    }
-    const GridBox& b = facts_.bounds;
-    return {static_cast<double>(b.min_x), static_cast<double>(b.min_y),
-            static_cast<double>(b.max_x), static_cast<double>(b.max_y)};
-  }
-
   [[nodiscard]] bool region_meets_domain() const {
     const Tin& t0 = terrain_.t0();
-    if (!border_) return meets_domain(window_, t0, facts_.bounds);
     return std::any_of(t0.triangles.begin(), t0.triangles.end(), [&](const Triangle& t) {
-      return region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
+      return !region_ ||
+             region_->meets(t0.position(t.v[0]), t0.position(t.v[1]), t0.position(t.v[2]));
     });
   }
 
@@ -252,15 +220,12 @@ class HighestSearch final : private BestStarVisitor {
   const HighestRequest& request_;
   QueryContext context_;
   Detail detail_;
-  LivingTies ties_;
+  LevelStars stars_;
   std::optional<GridRegion> region_;
-  std::optional<PolygonBorder> border_;  ///< Of a polygon.
-  GridWindow window_{};                  ///< Of a window, or of the terrain.
-  StarFilter filter_;
-  LivingStars living_;
-  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
+  std::optional<RegionBorder> border_;
+  LivingFilter filter_;
   std::set<HighCandidate> best_;
-  ClippedCorner on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
+  ValuedPlace on_border_{0.0, 0.0, -kInfinity};  ///< The highest point found that is no vertex.
 };
 
 }  // namespace

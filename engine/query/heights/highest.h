@@ -43,8 +43,8 @@ struct HighestResult {
   /// when exact.
   double height_min = 0, height_max = 0;
   /// The highest vertices in the region that touch the surface, by falling height; fewer than asked
-  /// for when the region holds fewer. Of equal heights the vertex farthest south comes first, then
-  /// the one farthest west, in any file of the same TIN.
+  /// for when the region holds fewer. Among equal heights the vertex farthest south comes first,
+  /// then the one farthest west, in any file of the same TIN.
   std::vector<HeightAt> vertices;
   /// How far the TIN that was asked is at most from the source, at samples and at any point,
   /// height's unit. 0 when exact.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Point location (paper, section 5.1): heights at points, one or millions, exact or at an error
+// Point location: heights at points, one or millions, exact or at an error
 // with the interval that the certificate guarantees.
 #pragma once
 
@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "engine/query/select/accounting.h"
-#include "engine/query/select/answer_by.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/query_limits.h"
@@ -24,8 +23,6 @@ namespace ptin {
 struct LocateRequest {
   DetailRequest detail;  ///< The TIN of which the heights are.
   QueryLimits limits;
-  /// By stars where the packed R-tree is in use; else by splits.
-  AnswerBy by = AnswerBy::kStars;
 };
 
 /// The answer for one point. The point's grid position is rounded as SpotMap says (2^-22 of a grid
@@ -63,19 +60,11 @@ struct LocateResult {
 /// share what they read.
 /// @throws Error invalid_argument    a coordinate is not finite (names the point); tolerance
 ///                                   negative or NaN; as Detail
-///               resource_exhausted  a single point's records, beside the results, exceed the
-///                                   memory limit
+///               resource_exhausted  the results and a group's points exceed the memory limit
 ///               corruption, io_error, cancelled
-/// Cost: by stars, for one point a few pages (find_triangles()), for a group of points close together
-/// the pages of their region, each once. By splits, for one point the records whose region of
-/// influence holds it, O(log n) of them in practice; for a group the records that any of its points
-/// needs, each read and applied once. With `vertices` the cost of Detail is added, once a call (select/detail.h).
+/// Cost: for one point a few pages (find_triangles()), for a group of points close together the pages
+/// of their region, each once. With `vertices` the cost of Detail is added (select/detail.h).
 [[nodiscard]] LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> points,
                                   const LocateRequest& request = {});
-
-/// As locate(), for questions that locate several times at one level of detail.
-/// @param detail  The level that `request.detail` means, found before.
-[[nodiscard]] LocateResult locate_at(const OpenedTerrain& terrain, std::span<const MapPoint> points,
-                                     const LocateRequest& request, const Detail& detail);
 
 }  // namespace ptin

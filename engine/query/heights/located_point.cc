@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/geometry/infinity.h"
+
 namespace ptin {
 
 void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle) {
@@ -38,6 +40,13 @@ LocatedPoint located_at(const Tin& tin, const HeightEncoding& heights, Spot spot
   }
   begin_with_least(point.triangle);
   return point;
+}
+
+SurfaceBounds bounds_at(const SurfaceBounds& of_triangle, const Detail& detail) {
+  if (!detail.is_asked()) {
+    return {0.0, {-kInfinity, kInfinity}};
+  }
+  return {std::min(of_triangle.deviation, detail.certificate().deviation), of_triangle.heights};
 }
 
 void set_interval(const SurfaceBounds& bounds, const StoreFacts& facts, LocatedPoint& point) {

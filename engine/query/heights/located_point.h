@@ -21,6 +21,11 @@ void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle);
 [[nodiscard]] LocatedPoint located_at(const Tin& tin, const HeightEncoding& heights, Spot spot,
                                       const Place& place);
 
+/// The bounds that an answer at a level gives of a triangle: those of the triangle itself, its
+/// deviation no larger than the level's. None where the full TIN was asked for, since a height is no
+/// interval then.
+[[nodiscard]] SurfaceBounds bounds_at(const SurfaceBounds& of_triangle, const Detail& detail);
+
 /// Sets the interval that holds the full surface at a point: the height plus and minus the
 /// triangle's deviation (at least the file's base), widened by the rounding of the height, and cut
 /// to the heights of the full surface below the triangle.

@@ -2,8 +2,10 @@
 #include "engine/query/heights/profile.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,7 +16,9 @@
 #include "engine/query/heights/ground_stretches.h"
 #include "engine/query/heights/profile_points.h"
 #include "engine/query/heights/stations.h"
+#include "engine/query/living/living_place.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/shape/tiler.h"
 #include "engine/query/walk/spot_path.h"
 
 namespace ptin {
@@ -41,6 +45,22 @@ struct LinePart {
   const SpotLine* line;
   std::size_t first, end;
 };
+
+/// Whether parts can be divided: a segment cannot.
+bool may_divide(std::span<const LinePart> parts) {
+  return parts.size() > 1 || parts.front().end - parts.front().first > 1;
+}
+
+/// The halves of parts of lines; those of a single one by its segments. REQUIRES: may_divide()
+std::array<std::vector<LinePart>, 2> divided(const std::vector<LinePart>& parts) {
+  if (parts.size() > 1) {
+    const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(parts.size() / 2);
+    return {std::vector(parts.begin(), middle), std::vector(middle, parts.end())};
+  }
+  const auto& [line, first, end] = parts.front();
+  const std::size_t middle = first + (end - first) / 2;
+  return {std::vector{LinePart{line, first, middle}}, std::vector{LinePart{line, middle, end}}};
+}
 
 /// Walks along lines, in groups whose stretches fit the memory.
 class Profiling {
@@ -121,14 +141,12 @@ class Profiling {
     for (const SpotLine& line : lines) {
       parts.push_back({&line, 0, line.spots.size() - 1});
     }
-    if (!parts.empty()) {
-      walk(parts);
-    }
+    if (parts.empty()) return;
+    work_in_parts(parts, [&](const std::vector<LinePart>& some) { return walk(some); });
   }
 
-  /// Walks along parts of lines. Parts that do not fit the memory together are halved; a single one
-  /// is halved by its segments.
-  void walk(std::span<const LinePart> parts) {
+  /// Walks along parts of lines, unless they do not fit the memory together and can be divided.
+  [[nodiscard]] bool walk(std::span<const LinePart> parts) {
     std::vector<SpotSegment> segments;
     for (const LinePart& part : parts) {
       for (std::size_t i = part.first; i < part.end; ++i) {
@@ -142,34 +160,12 @@ class Profiling {
     place.asks_each_star = true;
     const std::uint64_t left = context_.left_beside(held());
     GroundStretches stretches(path, facts().heights,
-                              may_halve(parts) ? std::min(left, kGroupBytes) : left);
+                              may_divide(parts) ? std::min(left, kGroupBytes) : left);
     const bool fits = reader_.read(place, context_, stretches);
     stretches.sort();
-    if (fits && write(parts, stretches)) {
-      return;
-    }
-    if (!may_halve(parts)) {
-      context_.admit(held() + stretches.bytes());
-    }
-    walk_halves(parts);
-  }
-
-  /// A segment is never halved.
-  [[nodiscard]] static bool may_halve(std::span<const LinePart> parts) noexcept {
-    return parts.size() > 1 || parts.front().end - parts.front().first > 1;
-  }
-
-  void walk_halves(std::span<const LinePart> parts) {
-    if (parts.size() > 1) {
-      walk(parts.first(parts.size() / 2));
-      walk(parts.subspan(parts.size() / 2));
-      return;
-    }
-    const auto& [line, first, end] = parts.front();
-    const std::size_t middle = first + (end - first) / 2;
-    const LinePart halves[] = {{line, first, middle}, {line, middle, end}};
-    walk({&halves[0], 1});
-    walk({&halves[1], 1});
+    if (fits && write(parts, stretches)) return true;
+    if (!may_divide(parts)) context_.admit(held() + stretches.bytes());
+    return false;
   }
 
   /// Writes the points of the parts. Returns false, and has written nothing, when stretches and
@@ -187,7 +183,7 @@ class Profiling {
         make_room();
         writer.write(static_cast<std::uint32_t>(i), stretches.of(segment++));
         const std::uint64_t bytes = stretches.bytes() + held();
-        if (bytes > request_.limits.memory_bytes && may_halve(parts)) {
+        if (bytes > request_.limits.memory_bytes && may_divide(parts)) {
           result_.points.resize(before);
           return false;
         }

@@ -11,7 +11,7 @@
 
 #include "engine/query/heights/ground_stretches.h"
 #include "engine/query/heights/profile.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/store_facts.h"
 
 namespace ptin {

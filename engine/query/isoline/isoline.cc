@@ -12,14 +12,26 @@
 #include "engine/query/isoline/isoline_clip.h"
 #include "engine/query/isoline/isoline_tiles.h"
 #include "engine/query/select/detail.h"
-#include "engine/query/select/predicate.h"
 
 namespace ptin {
 
 namespace {
 
 constexpr std::uint64_t kSmallestLimit = 1 << 20;
-constexpr std::uint64_t kTileBytesOfOneThread = std::uint64_t{256} << 20;
+
+/// Shares of the memory, in eighths. While tiles are traced it is that of the tiles, of the pieces,
+/// which cannot be put on disk, and of points. While lines are cut at a region, what the tiles have
+/// given back is that of the cut pieces, of their points and of the line at hand; where nothing is
+/// cut, of the line alone.
+constexpr std::uint64_t kShareOfTiles = 4, kShareOfPieces = 3, kShareOfPoints = 1;
+constexpr std::uint64_t kShareOfCutPieces = 2, kShareOfCutLine = 1, kShareOfLine = 4;
+
+std::uint64_t bytes_of_share(const IsolineRequest& request, std::uint64_t eighths) {
+  return request.limits.share(eighths, 8).memory_bytes;
+}
+
+constexpr std::uint64_t kTileBytes = 8 * kMiB;
+constexpr std::uint64_t kTileBytesOfOneThread = 256 * kMiB;
 /// Bytes of a point while its line is written: the point itself, in a geometry, and as bytes of a
 /// format.
 constexpr std::uint64_t kBytesAPointOut = 80;
@@ -30,13 +42,12 @@ constexpr std::uint64_t kBytesAPointOut = 80;
 class IsolineExtraction {
  public:
   IsolineExtraction(const OpenedTerrain& terrain, const IsolineRequest& request)
-      : terrain_(terrain),
-        store_(terrain.store()),
+      : store_(terrain.store()),
         request_(request),
         levels_(request.levels, store_.facts().heights),
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
-        result_(PointStore(request.limits.memory_bytes / 8, request.temporary_folder)) {
+        result_(PointStore(bytes_of_share(request, kShareOfPoints), request.temporary_folder)) {
     if (!request.region) return;
     region_.emplace(*request.region, store_.facts().map);
     if (const auto* window = std::get_if<Window>(&*request.region)) {
@@ -53,9 +64,9 @@ class IsolineExtraction {
     }
   }
 
-  Isolines run() {
+  Isolines run(const TraceTerrain& trace) {
     context_.admit(kSmallestLimit);
-    trace();
+    trace_terrain(trace);
     result_.lines_ = join_pieces(result_.pieces_, context_);
     admit_lines();
     if (clip_) {
@@ -75,39 +86,20 @@ class IsolineExtraction {
   }
 
  private:
-  /// Tiles take half of the memory. Pieces take three eighths, since they cannot be put on disk;
-  /// points take the rest.
-  void trace() {
-    TileTraceRequest request{levels_,
-                             detail_,
-                             region_ ? &*region_ : nullptr,
-                             request_.limits.memory_bytes / 2,
-                             request_.limits.memory_bytes / 8 * 3,
-                             request_.threads,
-                             request_.limits.stop};
+  void trace_terrain(const TraceTerrain& trace) {
+    TileTraceRequest request{
+        levels_,
+        detail_,
+        region_ ? &*region_ : nullptr,
+        {bytes_of_share(request_, kShareOfTiles),
+         request_.threads <= 1 ? kTileBytesOfOneThread : kTileBytes, request_.threads},
+        bytes_of_share(request_, kShareOfPieces),
+        request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
-    if (request_.threads <= 1) {
-      request.tile_bytes = kTileBytesOfOneThread;
-    }
-    const bool by_stars = request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
-    TileTraces traces = by_stars ? trace_tiles(terrain_, request, result_.points_, context_.cost)
-                                 : trace_by_splits(terrain_, request, *crossed_records(),
-                                                   result_.points_, context_.cost);
+    TileTraces traces = trace(request, result_.points_, context_.cost);
     result_.pieces_ = std::move(traces.pieces);
     result_.crossed = traces.counts;
     result_.tiles = traces.tiles;
-  }
-
-  /// True for the records that the levels may cross in the region, at the level of detail.
-  [[nodiscard]] PredicatePtr crossed_records() const {
-    std::vector<PredicatePtr> parts{levels_.crossing()};
-    if (request_.region) {
-      parts.push_back(meets_region(*request_.region, store_.facts().map));
-    }
-    if (detail_.is_asked()) {
-      parts.push_back(std::make_shared<AboveError>(detail_.tolerance()));
-    }
-    return all_of(std::move(parts));
   }
 
   /// Checks that the longest line fits. Lines are joined and written in the memory that tiles have
@@ -122,7 +114,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > request_.limits.memory_bytes / (clip_ ? 8 : 2)) {
+    if (bytes > bytes_of_share(request_, clip_ ? kShareOfCutLine : kShareOfLine)) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +
@@ -134,7 +126,7 @@ class IsolineExtraction {
   }
 
   void cut_at_region() {
-    PointStore points(request_.limits.memory_bytes / 8, request_.temporary_folder);
+    PointStore points(bytes_of_share(request_, kShareOfPoints), request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
     std::vector<MapPoint> line;
@@ -148,7 +140,7 @@ class IsolineExtraction {
         piece.ring = joined.ring && clipped.whole;
         piece.first = points.size();
         piece.count = static_cast<std::uint32_t>(part.size());
-        if ((pieces.size() + 1) * kBytesAPiece > request_.limits.memory_bytes / 4) {
+        if ((pieces.size() + 1) * kBytesAPiece > bytes_of_share(request_, kShareOfCutPieces)) {
           throw Error(ErrorCode::resource_exhausted,
                       "the region cuts the isolines into more than " +
                           std::to_string(pieces.size()) +
@@ -175,7 +167,6 @@ class IsolineExtraction {
     result_.cost = context_.cost;
   }
 
-  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const IsolineRequest& request_;
   LevelSet levels_;
@@ -191,12 +182,20 @@ Isoline Isolines::line(std::size_t i, std::vector<MapPoint>& points) const {
   return {lines_.lines[i].level, lines_.lines[i].ring, points};
 }
 
-Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {
+Isolines extract_isolines(const OpenedTerrain& terrain, const IsolineRequest& request,
+                          const TraceTerrain& trace) {
   const auto start = std::chrono::steady_clock::now();
-  Isolines result = IsolineExtraction(terrain, request).run();
+  Isolines result = IsolineExtraction(terrain, request).run(trace);
   result.cost.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {
+  return extract_isolines(terrain, request,
+                          [&](const TileTraceRequest& tiles, PointStore& points, QueryCost& cost) {
+                            return trace_tiles(terrain, tiles, points, cost);
+                          });
 }
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Isolines of a terrain: joined polylines and rings (paper, section 5.2), at full detail, at a
+// Isolines of a terrain: joined polylines and rings, at full detail, at a
 // certified error or of the first vertices, of any size within a memory limit.
 #pragma once
 
@@ -13,7 +13,6 @@
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
 #include "engine/query/select/accounting.h"
-#include "engine/query/select/answer_by.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/query_limits.h"
@@ -33,8 +32,6 @@ struct IsolineRequest {
   std::string temporary_folder;
   bool counts_vertices = false;  ///< Fill in TraceCounts::vertices: a look-up for each corner.
   int threads = 1;  ///< At most; fewer where the memory is small. The lines do not depend on it.
-  /// By stars where the packed R-tree is in use; else by splits, in one mesh and on one thread.
-  AnswerBy by = AnswerBy::kStars;
 };
 
 /// A line to be read. `points` are in map units, without repetitions in a row, and lie in the

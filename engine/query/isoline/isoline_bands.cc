@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/query/isoline/isoline_rings.h"
+#include "engine/query/shape/clip.h"
 
 namespace ptin {
 
@@ -18,9 +19,7 @@ using Ring = std::vector<MapPoint>;
 double twice_area(const Ring& ring) {
   double sum = 0;
   const MapPoint o = ring.front();
-  for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
-    sum += (ring[i].x - o.x) * (ring[i + 1].y - o.y) - (ring[i + 1].x - o.x) * (ring[i].y - o.y);
-  }
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i) sum += cross(o, ring[i], ring[i + 1]);
   return sum;
 }
 
@@ -77,8 +76,7 @@ Side side_of(MapPoint p, const Ring& ring) {
     if ((a.y <= p.y) == (b.y <= p.y)) {
       continue;
     }
-    const double left = (b.x - a.x) * (p.y - a.y) - (p.x - a.x) * (b.y - a.y);
-    if ((left > 0) == (b.y > a.y)) {
+    if ((cross(a, b, p) > 0) == (b.y > a.y)) {
       inside = !inside;
     }
   }

@@ -66,12 +66,12 @@ class ChainSet {
  private:
   struct Chain {
     CutEdge begin, end;
-    CutEdge smallest;  ///< Of the edges that it crosses.
+    CutEdge smallest;  ///< Smallest of the edges that it crosses.
     std::uint32_t level;
     std::uint32_t first = 0, count = 0;
     std::uint32_t smallest_at = 0;  ///< Which of its points lies on `smallest`.
     std::uint32_t next = kNone;     ///< The chain that begins where this one ends.
-    bool is_next = false;           ///< Of another chain.
+    bool is_next = false;           ///< Whether it is `next` of another chain.
     bool is_taken = false;
   };
   /// The place of a chain in a table of the edges on which chains begin.
@@ -98,7 +98,7 @@ class ChainSet {
   GrowingArray<Chain> chains_;
   GrowingArray<MapPoint> points_;
   std::vector<Slot> slots_;
-  GrowingArray<MapPoint> line_;  ///< Of the line at hand; its size is what there is room for.
+  GrowingArray<MapPoint> line_;  ///< The line at hand; the size is what there is room for.
   std::size_t line_points_ = 0;
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin {
 
 namespace {
@@ -50,43 +52,24 @@ bool is_inside(MapPoint p, const Window& w) noexcept {
   return w.min_x <= p.x && p.x <= w.max_x && w.min_y <= p.y && p.y <= w.max_y;
 }
 
-/// Where a segment meets the line x == at, or y == at when coordinates are exchanged.
-double meet(double au, double av, double bu, double bv, double at) noexcept {
-  if (au == at) {
-    return av;
-  }
-  if (bu == at) {
-    return bv;
-  }
-  if (std::tie(bu, bv) < std::tie(au, av)) {
-    std::swap(au, bu), std::swap(av, bv);
-  }
-  return av + (at - au) / (bu - au) * (bv - av);
+/// Whether a coordinate that goes from `a` to `b` comes in over a side of the window.
+bool comes_in(double a, double b, double side, bool is_low_side) noexcept {
+  return is_low_side ? a < side && side <= b : b <= side && side < a;
 }
 
 /// The first point of a -> b in the window. A point outside lies beyond one or two sides of the
 /// window, and where the segment comes in it crosses one of these sides.
 std::optional<MapPoint> entry(MapPoint a, MapPoint b, const Window& w) noexcept {
-  if (is_inside(a, w)) {
-    return a;
-  }
+  if (is_inside(a, w)) return a;
   for (const double side : {w.min_x, w.max_x}) {
-    const bool crosses = side == w.min_x ? a.x < side && side <= b.x : b.x <= side && side < a.x;
-    if (crosses) {
-      const MapPoint p{side, meet(a.x, a.y, b.x, b.y, side)};
-      if (is_inside(p, w)) {
-        return p;
-      }
-    }
+    if (!comes_in(a.x, b.x, side, side == w.min_x)) continue;
+    const MapPoint p{side, meet(a.x, a.y, b.x, b.y, side)};
+    if (is_inside(p, w)) return p;
   }
   for (const double side : {w.min_y, w.max_y}) {
-    const bool crosses = side == w.min_y ? a.y < side && side <= b.y : b.y <= side && side < a.y;
-    if (crosses) {
-      const MapPoint p{meet(a.y, a.x, b.y, b.x, side), side};
-      if (is_inside(p, w)) {
-        return p;
-      }
-    }
+    if (!comes_in(a.y, b.y, side, side == w.min_y)) continue;
+    const MapPoint p{meet(a.y, a.x, b.y, b.x, side), side};
+    if (is_inside(p, w)) return p;
   }
   return std::nullopt;
 }
@@ -156,9 +139,6 @@ class PolygonClip::OfSegment {
 
   [[nodiscard]] double along(MapPoint p) const {
     return (p.x - a_.x) * (b_.x - a_.x) + (p.y - a_.y) * (b_.y - a_.y);
-  }
-  [[nodiscard]] static double cross(MapPoint o, MapPoint d, MapPoint p) {
-    return (d.x - o.x) * (p.y - o.y) - (d.y - o.y) * (p.x - o.x);
   }
   /// On which side of the line from o to d a place lies: 0 within the slack of it.
   [[nodiscard]] int side_of(MapPoint o, MapPoint d, MapPoint p) const {

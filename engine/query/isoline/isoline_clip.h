@@ -23,7 +23,7 @@ namespace ptin {
 
 /// The parts of a line in a closed region, in the direction of the line. Each part has at least two
 /// points, and none repeated in a row. A ring (its last point is its first) that lies inside stays a
-/// ring. Of a ring that is cut, the part that holds the ring's first point is one part, not two.
+/// ring. The first point of a ring that is cut divides no part.
 struct ClippedParts {
   std::vector<std::vector<MapPoint>> parts;
   bool whole = false;  ///< The whole line is inside; `parts` holds it unchanged.

@@ -3,78 +3,30 @@
 
 #include <algorithm>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/stars_in_region.h"
-#include "engine/query/refine/refinement.h"
-#include "engine/query/refine/tile_queue.h"
-#include "engine/query/select/predicate.h"
-#include "engine/query/select/retrieval.h"
+#include "engine/query/shape/tiler.h"
 
 namespace ptin {
 
 namespace {
-
-constexpr std::int64_t kSmallestTile = 8;  // grid units a side
-/// With less memory for its tile a thread would read most pages several times.
-constexpr std::uint64_t kUsefulBytes = std::uint64_t{2} << 20;
 
 std::string size_text(std::uint64_t bytes) {
   return bytes < (16 << 20) ? std::to_string((bytes + 1023) >> 10) + " KiB"
                             : std::to_string((bytes + 0xFFFFF) >> 20) + " MiB";
 }
 
-/// Where all workers put what they traced.
-class Collected {
- public:
-  Collected(PointStore& points, std::uint64_t piece_bytes, std::string file)
-      : points_(points), most_pieces_(piece_bytes / kBytesAPiece), file_(std::move(file)) {}
-
-  void add(const TracedPieces& traced, const TraceCounts& counts) {
-    const std::vector<IsolinePiece>& pieces = traced.pieces;
-    const std::lock_guard lock(mutex_);
-    if (all_.pieces.size() + pieces.size() > most_pieces_) {
-      throw Error(ErrorCode::resource_exhausted,
-                  "there are more than " + std::to_string(most_pieces_) +
-                      " pieces of isolines to join, which is all that the memory holds: give more "
-                      "memory, or ask for fewer levels, a window or a larger error",
-                  file_);
-    }
-    const std::size_t before = all_.pieces.size();
-    all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
-    for (IsolinePiece& piece : std::span(all_.pieces).subspan(before)) {
-      piece.first += points_.size();
-    }
-    points_.add(traced.points);
-    all_.counts.triangles += counts.triangles;
-    all_.counts.vertices += counts.vertices;
-    all_.counts.segments += counts.segments;
-    ++all_.tiles;
-  }
-  [[nodiscard]] TileTraces release() { return std::move(all_); }
-
- private:
-  std::mutex mutex_;
-  PointStore& points_;
-  std::uint64_t most_pieces_;
-  std::string file_;
-  TileTraces all_;
-};
-
 /// Gathers and traces tiles, one after the other, in the same memory.
 class Worker final : private LivingVisitor {
  public:
   Worker(const OpenedTerrain& terrain, const TileTraceRequest& request, std::uint64_t limit,
-         TileQueue& queue, Collected& collected)
+         TraceCollector& collected)
       : store_(terrain.store()),
         request_(request),
-        limit_(limit),
-        queue_(queue),
         collected_(collected),
         context_({limit, request.stop}, store_.path()),
         stars_in_region_(request.region),
@@ -84,36 +36,33 @@ class Worker final : private LivingVisitor {
     place_.stars = request.region == nullptr ? nullptr : &stars_in_region_;
   }
 
-  void run() noexcept {
-    queue_.run([this](const GridBox& tile) { trace(tile); });
-  }
-  [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
-
- private:
-  /// Traces the triangles of a tile, or has its halves traced when it does not fit.
-  void trace(const GridBox& tile) {
+  /// Traces the triangles of a tile, unless it does not fit.
+  [[nodiscard]] bool work(const GridTile& tile) {
     context_.check_stop();
-    place_.box = tile;
-    is_small_ = half_perimeter(tile) <= 2 * kSmallestTile;
-    most_bytes_ = is_small_ ? limit_ : std::min(limit_, request_.tile_bytes);
+    place_.box = tile.box;
+    is_smallest_ = tile.is_smallest;
+    most_bytes_ = tile.most_bytes;
     is_full_ = false;
-    tracer_.begin({tile, request_.region, request_.counts_vertices}, most_bytes_);
+    tracer_.begin({tile.box, request_.region, request_.counts_vertices}, most_bytes_);
     const std::uint64_t before = context_.cost.records_examined;
     const bool fits = reader_.read(place_, context_, *this) && !is_full_;
     if (const std::uint64_t records = context_.cost.records_examined - before; records > 0) {
       bytes_of_record_ = static_cast<double>(tracer_.bytes_wanted()) / static_cast<double>(records);
     }
-    if (!fits) {
-      halve(tile);
-      return;
+    if (fits) {
+      collected_.add(tracer_.join(), tracer_.counts());
+    } else if (is_smallest_) {
+      refuse(tile.box);
     }
-    collected_.add(tracer_.join(), tracer_.counts());
+    return fits;
   }
+  [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
 
+ private:
   /// A tile that is expected not to fit is not read: halves of a tile that would have fitted cost less
   /// than a tile read in vain. The expectation is trusted less each time, since nothing is learnt then.
   bool expect(std::uint64_t records) override {
-    if (is_small_ ||
+    if (is_smallest_ ||
         bytes_of_record_ * static_cast<double>(records) <= static_cast<double>(most_bytes_)) {
       return true;
     }
@@ -127,83 +76,66 @@ class Worker final : private LivingVisitor {
   }
   void take(const LivingTriangle& t) override { is_full_ = is_full_ || !tracer_.add(t); }
 
-  /// Has the halves of a tile traced that does not fit.
-  void halve(const GridBox& tile) {
-    if (!is_small_) {
-      queue_.put_halves(tile);
-      return;
-    }
+  [[noreturn]] void refuse(const GridBox& tile) const {
+    const auto side = [](std::int32_t low, std::int32_t high) {
+      return std::to_string(std::int64_t{high} - low);
+    };
     throw Error(ErrorCode::resource_exhausted,
-                "the isolines of " + std::to_string(kSmallestTile) + " x " +
-                    std::to_string(kSmallestTile) + " grid units alone take " +
+                "the isolines of " + side(tile.min_x, tile.max_x) + " x " +
+                    side(tile.min_y, tile.max_y) + " grid units alone take " +
                     size_text(tracer_.bytes_wanted()) + " or more, and a tile may take " +
-                    size_text(limit_) +
+                    size_text(most_bytes_) +
                     ": give more memory, or ask for fewer levels or a larger error",
                 store_.path());
   }
 
   const StoreFile& store_;
   const TileTraceRequest& request_;
-  std::uint64_t limit_;
-  TileQueue& queue_;
-  Collected& collected_;
+  TraceCollector& collected_;
   QueryContext context_;
   StarsInRegion stars_in_region_;
   LivingPlace place_;
   LivingReader reader_;
   LineTracer tracer_;
   std::uint64_t most_bytes_ = 0;
-  bool is_small_ = false;       ///< The tile cannot be halved.
+  bool is_smallest_ = false;    ///< The tile is not halved.
   bool is_full_ = false;        ///< What was read of the tile does not fit.
   double bytes_of_record_ = 8;  ///< About, by what was gathered last.
 };
 
-/// As many threads as asked for, as long as each has room for a tile of a useful size.
-int threads_within(const TileTraceRequest& request) {
-  const std::uint64_t most = std::max<std::uint64_t>(request.memory_bytes / kUsefulBytes, 1);
-  return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
-}
-
 }  // namespace
+
+void TraceCollector::add(const TracedPieces& traced, const TraceCounts& counts) {
+  const std::vector<IsolinePiece>& pieces = traced.pieces;
+  const std::lock_guard lock(mutex_);
+  if (all_.pieces.size() + pieces.size() > most_pieces_) {
+    throw Error(ErrorCode::resource_exhausted,
+                "there are more than " + std::to_string(most_pieces_) +
+                    " pieces of isolines to join, which is all that the memory holds: give more "
+                    "memory, or ask for fewer levels, a window or a larger error",
+                file_);
+  }
+  const std::size_t before = all_.pieces.size();
+  all_.pieces.insert(all_.pieces.end(), pieces.begin(), pieces.end());
+  for (IsolinePiece& piece : std::span(all_.pieces).subspan(before)) {
+    piece.first += points_.size();
+  }
+  points_.add(traced.points);
+  all_.counts.triangles += counts.triangles;
+  all_.counts.vertices += counts.vertices;
+  all_.counts.segments += counts.segments;
+  ++all_.tiles;
+}
 
 TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                        PointStore& points, QueryCost& cost) {
-  TileQueue queue(terrain.store().facts().bounds);
-  Collected collected(points, request.piece_bytes, terrain.store().path());
-  const int count = threads_within(request);
-  const std::uint64_t limit = request.memory_bytes / static_cast<std::uint64_t>(count);
-  std::vector<std::unique_ptr<Worker>> workers;
-  for (int i = 0; i < count; ++i) {
-    workers.push_back(std::make_unique<Worker>(terrain, request, limit, queue, collected));
-  }
-  run_on_threads(count, [&](int i) { workers[static_cast<std::size_t>(i)]->run(); });
-  queue.rethrow();
-  for (const auto& worker : workers) {
+  TraceCollector collected(request, points, terrain.store().path());
+  const auto make = [&](std::uint64_t bytes) {
+    return std::make_unique<Worker>(terrain, request, bytes, collected);
+  };
+  for (const auto& worker : workers_on_tiles(terrain.store().facts().bounds, request.tiles, make)) {
     cost.add_counts(worker->cost());
   }
-  return collected.release();
-}
-
-TileTraces trace_by_splits(const OpenedTerrain& terrain, const TileTraceRequest& request,
-                           const AttributePredicate& predicate, PointStore& points,
-                           QueryCost& cost) {
-  const StoreFile& store = terrain.store();
-  const StoreFacts& facts = store.facts();
-  QueryContext context({request.memory_bytes, request.stop}, store.path());
-  std::vector<PendingSplit> splits =
-      retrieve(terrain.record_source(), predicate, bytes_of(terrain.t0()), context);
-  request.detail.keep(splits);
-  Refinement refinement(terrain.t0());
-  refinement.apply(splits, context);
-  const std::uint64_t bytes = bytes_of(terrain.t0()) + refinement_bytes(splits.size());
-  LineTracer tracer(request.levels, facts.heights, facts.map, context);
-  if (!trace_mesh(refinement.tin(), {facts.bounds, request.region, request.counts_vertices},
-                  context.left_beside(bytes), tracer)) {
-    context.admit(bytes + tracer.bytes_wanted());
-  }
-  Collected collected(points, request.piece_bytes, store.path());
-  collected.add(tracer.join(), tracer.counts());
-  cost.add_counts(context.cost);
   return collected.release();
 }
 

@@ -1,34 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The pieces of a whole terrain's isolines, tile by tile: of each tile the triangles that a level
-// crosses are gathered and traced, on any number of threads, within a limit on memory. Or from one
-// mesh of splits.
+// crosses are gathered and traced, on any number of threads, within a limit on memory.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/query/isoline/isoline.h"
 #include "engine/query/isoline/isoline_pieces.h"
+#include "engine/query/isoline/isoline_trace.h"
 #include "engine/query/isoline/levels.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/select/predicate.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/tiler.h"
 
 namespace ptin {
 
 struct TileTraceRequest {
   const LevelSet& levels;
   const Detail& detail;
-  const GridRegion* region;    ///< Only triangles that meet it are traced; null: all.
-  std::uint64_t memory_bytes;  ///< For the tiles in work, on all threads together.
-  std::uint64_t piece_bytes;   ///< For the pieces, kBytesAPiece each.
-  int threads;
+  const GridRegion* region;  ///< Only triangles that meet it are traced; null: all.
+  /// Pages on the borders of tiles are read for each of them, so one thread is better off with large
+  /// tiles; several share many small ones out.
+  TileLimits tiles;
+  std::uint64_t piece_bytes;  ///< For the pieces, kBytesAPiece each.
   std::stop_token stop;
-  /// Bytes of a tile at most, where that is possible. Pages on the borders of tiles are read for each
-  /// of them, so one thread is better off with large tiles; several share many small ones out.
-  std::uint64_t tile_bytes = std::uint64_t{8} << 20;
   bool counts_vertices = false;  ///< TraceScope::counts_vertices.
 };
 
@@ -40,6 +43,27 @@ struct TileTraces {
   std::vector<IsolinePiece> pieces;
   TraceCounts counts;
   std::uint64_t tiles = 0;
+};
+
+/// Where what was traced is put together. Threads: add() may be called at once.
+class TraceCollector {
+ public:
+  /// @param points  Borrowed; takes the points of all pieces.
+  /// @param file    Named in errors.
+  TraceCollector(const TileTraceRequest& request, PointStore& points, std::string file)
+      : points_(points), most_pieces_(request.piece_bytes / kBytesAPiece), file_(std::move(file)) {}
+
+  /// Adds a tile.
+  /// @throws Error resource_exhausted  there are too many pieces; as PointStore::add
+  void add(const TracedPieces& traced, const TraceCounts& counts);
+  [[nodiscard]] TileTraces release() { return std::move(all_); }
+
+ private:
+  std::mutex mutex_;
+  PointStore& points_;
+  std::uint64_t most_pieces_;
+  std::string file_;
+  TileTraces all_;
 };
 
 /// Traces a terrain tile by tile, from the triangles that live at the level and that a level
@@ -54,13 +78,12 @@ struct TileTraces {
 [[nodiscard]] TileTraces trace_tiles(const OpenedTerrain& terrain, const TileTraceRequest& request,
                                      PointStore& points, QueryCost& cost);
 
-/// The same as the paper has it: the records of which `predicate` is true (all that the levels may
-/// cross above the tolerance of the level of detail) are applied to T0, and that one mesh is traced.
-/// @throws Error resource_exhausted  the mesh does not fit the memory: told before it is read
-///               as trace_tiles()
-[[nodiscard]] TileTraces trace_by_splits(const OpenedTerrain& terrain,
-                                         const TileTraceRequest& request,
-                                         const AttributePredicate& predicate, PointStore& points,
-                                         QueryCost& cost);
+/// A way to the pieces of a terrain's isolines: trace_tiles(), or as the paper has it.
+using TraceTerrain = std::function<TileTraces(const TileTraceRequest&, PointStore&, QueryCost&)>;
+
+/// isolines() of the pieces that `trace` finds.
+/// @throws Error as isolines(), and what `trace` throws
+[[nodiscard]] Isolines extract_isolines(const OpenedTerrain& terrain, const IsolineRequest& request,
+                                        const TraceTerrain& trace);
 
 }  // namespace ptin

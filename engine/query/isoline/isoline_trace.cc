@@ -222,15 +222,4 @@ const TracedPieces& LineTracer::join() {
   return traced_;
 }
 
-bool trace_mesh(const Tin& tin, const TraceScope& scope, std::uint64_t most_bytes,
-                LineTracer& tracer) {
-  tracer.begin(scope, most_bytes);
-  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    if (tin.is_alive(t) && !tracer.add(tin, t)) {
-      return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace ptin

@@ -16,11 +16,11 @@
 #include "engine/query/isoline/isoline_chains.h"
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
+#include "engine/query/living/living_stars.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/region.h"
 #include "storage/layout.h"
-#include "storage/living_stars.h"
 
 namespace ptin {
 
@@ -43,7 +43,7 @@ struct TracedPieces {
 /// Traces every level through triangles, which come in any order, with higher ground on the right. A
 /// line ends where the surface does, at a border or a void, and where the triangles do.
 ///
-/// Of a star the lines are followed from triangle to triangle as these lie side by side around its
+/// Lines are followed within a star from triangle to triangle, as these lie side by side around its
 /// centre: a chain. Chains are joined by the edges on which they end, those that came one after the
 /// other first.
 /// Threads: one owner. What was allocated is used again.
@@ -110,17 +110,10 @@ class LineTracer {
   ChainSet chains_;  ///< What batches were joined to.
   TracedPieces traced_;
   KeyTable vertices_;
-  /// Of the star at hand: its centre, its corners, and of each triangle whether it is traced.
+  /// The star at hand: its centre, its corners, and of each triangle whether it is traced.
   Corner centre_{};
   std::array<Corner, layout::kMostDegree + 1> corners_{};
   std::array<bool, layout::kMostDegree + 1> is_wanted_{}, is_crossed_{};
 };
-
-/// Begins to trace, and adds the triangles of a mesh. False when they take more than `most_bytes`, not
-/// counting mesh and pieces.
-/// @throws Error cancelled
-/// Cost: linear in the mesh, and in the segments.
-[[nodiscard]] bool trace_mesh(const Tin& tin, const TraceScope& scope, std::uint64_t most_bytes,
-                              LineTracer& tracer);
 
 }  // namespace ptin

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
+#include "engine/query/living/living_page.h"
 #include "engine/query/living/living_ties.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
@@ -29,27 +31,51 @@ class LevelStars {
   void clear() noexcept { ties_.clear(); }
 
   /// Reads what the filter asks for of a page, in the place of the page before.
-  /// @param filter  Of the level of detail (set_level()).
+  /// @param page    A PageId, or a page that the directory named.
+  /// @param filter  Filter of the level of detail (set_level()).
   /// @throws Error corruption, io_error
-  void read(PageId page, const StarFilter& filter, QueryContext& context) {
-    read_from(page, filter, context);
+  template <class Page>
+  void read(const Page& page, const LivingFilter& filter, QueryContext& context) {
+    living_.clear();
+    const auto look = [&](const RecordPage& p) {
+      context.cost.records_examined += p.records();
+      take_living(p, filter, living_);
+    };
+    store_->look_at(page, std::ref(look), context.cost.io);
+    context.cost.stars_read += living_.stars.size();
+    ties_.note_fans(living_);
   }
-  /// The same of a page that the directory named.
-  void read(const DirectoryPage& page, const StarFilter& filter, QueryContext& context) {
-    read_from(page, filter, context);
-  }
+  /// What was read of the page.
+  [[nodiscard]] const LivingStars& living() const noexcept { return living_; }
   /// Calls visit(const LivingTriangle&) for triangles of T0, or of the page, whose box is wanted:
-  /// wants(const GridBox&). Those of which the level does not tell are set aside.
+  /// wants(const GridBox&), and that are wanted: is_wanted(const LivingTriangle&). Those of which the
+  /// level does not tell are set aside.
+  template <class Wants, class IsWanted, class Visit>
+  void visit_t0(const Wants& wants, const IsWanted& is_wanted, const Visit& visit) {
+    visit_living(store_->t0(), detail_->level(), [&](const LivingTriangle& t) {
+      if (wants(box_of(t)) && is_wanted(t) && !ties_.set_aside(t)) {
+        visit(t);
+      }
+    });
+  }
+  template <class Wants, class IsWanted, class Visit>
+  void visit_page(const Wants& wants, const IsWanted& is_wanted, const Visit& visit) {
+    visit_living(living_, heights_, wants, [&](const LivingTriangle& t) {
+      if (is_wanted(t) && !ties_.set_aside(t)) {
+        visit(t);
+      }
+    });
+  }
+  /// The same where the box tells alone.
   template <class Wants, class Visit>
   void visit_t0(const Wants& wants, const Visit& visit) {
-    visit_living(store_->t0(), detail_->level(),
-                 [&](const LivingTriangle& t) { take(t, wants, visit); });
+    visit_t0(
+        wants, [](const LivingTriangle&) { return true; }, visit);
   }
   template <class Wants, class Visit>
   void visit_page(const Wants& wants, const Visit& visit) {
-    visit_living(living_, heights_, wants, visit);
-    visit_living(stars_, *detail_, heights_,
-                 [&](const LivingTriangle& t) { take(t, wants, visit); });
+    visit_page(
+        wants, [](const LivingTriangle&) { return true; }, visit);
   }
   /// Calls visit(const LivingTriangle&) for each triangle set aside that lives, and forgets all.
   template <class Visit>
@@ -62,25 +88,16 @@ class LevelStars {
     ties_.abandon(visit);
   }
 
-  /// Bytes of what was set aside, and of what tells of it.
+  /// How many triangles were set aside; the bytes of them, and of what tells of them.
+  [[nodiscard]] std::size_t count_aside() const noexcept { return ties_.count(); }
   [[nodiscard]] std::uint64_t bytes_aside() const noexcept { return ties_.bytes(); }
 
  private:
-  template <class Page>
-  void read_from(const Page& page, const StarFilter& filter, QueryContext& context);
-  template <class Wants, class Visit>
-  void take(const LivingTriangle& t, const Wants& wants, const Visit& visit) {
-    if (wants(box_of(t)) && !ties_.set_aside(t)) {
-      visit(t);
-    }
-  }
-
   const StoreFile* store_;
   const Detail* detail_;
   HeightEncoding heights_;
   LivingTies ties_;
   LivingStars living_;
-  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
 };
 
 }  // namespace ptin

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "storage/packed_rtree.h"
@@ -26,6 +27,26 @@ bool asks_within(const StarPredicate& condition, const GridBox& box) {
 PageId id_of(PageId page) { return page; }
 PageId id_of(const DirectoryPage& page) { return page.id; }
 
+/// The condition of pages with stars across a step, where there are steps.
+class PlaceStars final : public StarPredicate {
+ public:
+  PlaceStars(const LivingPlace& place, const HeightEncoding& heights)
+      : place_(place), heights_(heights) {}
+  [[nodiscard]] bool may_hold(const StarAttributes& a) const noexcept override {
+    return !is_empty(a.heights) && !steps_within_codes(a.heights).empty() &&
+           (place_.stars == nullptr || place_.stars->may_hold(a));
+  }
+
+ private:
+  [[nodiscard]] std::span<const std::uint64_t> steps_within_codes(const Interval& codes) const {
+    return steps_within(place_.steps, ordered_height(heights_.bits(codes.lo), heights_.type),
+                        ordered_height(heights_.bits(codes.hi), heights_.type));
+  }
+
+  const LivingPlace& place_;
+  const HeightEncoding& heights_;
+};
+
 bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
                    const HeightEncoding& heights) {
   if (place.heights == kAllHeights && place.steps.empty()) {
@@ -47,13 +68,14 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 }  // namespace
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
-  ties_.clear();
-  filter_ = {.box = place.box,
-             .heights = place.heights,
-             .steps = place.steps,
-             .also = place.stars,
-             .also_of_stars = place.asks_each_star};
-  set_level(detail_, filter_);
+  stars_.clear();
+  const PlaceStars across_steps(place, heights_);
+  filter_.box = place.box;
+  filter_.heights = place.heights;
+  filter_.steps = place.steps;
+  filter_.also = place.steps.empty() ? place.stars : &across_steps;
+  filter_.each = place.asks_each_star ? place.stars : nullptr;
+  set_level(stars_.detail(), filter_);
   if (asks_directory()) {
     std::vector<DirectoryPage> named;
     store_.directory()->find_in(filter_, named, context.cost.io);
@@ -89,74 +111,45 @@ bool LivingReader::take_all(std::span<const Page> pages, std::uint64_t records,
   if (!visitor.expect(records) || !visitor.begin(store_.t0().triangles.size())) {
     return false;
   }
-  visit_living(store_.t0(), filter_.level,
-               [&](const LivingTriangle& t) { offer(t, place, visitor); });
+  const auto take = [&](const LivingTriangle& t) { visitor.take(t); };
+  stars_.visit_t0([&](const GridBox& box) { return meets(box, place.box); },
+                  [&](const LivingTriangle& t) { return is_wanted(t, place); }, take);
   std::vector<PageId> ids(pages.size());
   std::transform(pages.begin(), pages.end(), ids.begin(), [](const Page& p) { return id_of(p); });
   store_.pages().announce(ids, context.cost.io);
   for (const Page& page : pages) {
     context.check_stop();
-    if (!(filter_.with_ties ? take_tied_page(page, place, context, visitor)
-                            : take_page(page, place, context, visitor))) {
+    if (!take_page(page, place, context, visitor)) {
       return false;
     }
   }
-  if (!visitor.begin(ties_.count())) {
+  if (!visitor.begin(stars_.count_aside())) {
     return false;
   }
-  ties_.settle([&](const LivingTriangle& t) { visitor.take(t); });
+  stars_.settle(take);
   return true;
 }
 
 template <class Page>
 bool LivingReader::take_page(const Page& page, const LivingPlace& place, QueryContext& context,
                              LivingVisitor& visitor) {
-  living_.clear();
-  context.cost.records_examined += store_.read_living(page, filter_, living_, context.cost.io);
-  context.cost.stars_read += living_.stars.size();
-  if (!visitor.begin(living_.corners.size())) {
+  stars_.read(page, filter_, context);
+  context.admit(stars_.bytes_aside());
+  const std::size_t aside = stars_.bytes_aside() / sizeof(LivingTriangle);
+  if (!visitor.begin(stars_.living().corners.size() + aside)) {
     return false;
   }
-  if (visitor.take_stars(living_)) {
+  if (!filter_.with_ties && visitor.take_stars(stars_.living())) {
     return true;
   }
-  visit_living(living_, heights_, [&](const LivingTriangle& t) {
-    if (is_wanted(t, place)) {
-      visitor.take(t);
-    }
-  });
-  return true;
-}
-
-/// The same where the level cuts between records of one error.
-template <class Page>
-bool LivingReader::take_tied_page(const Page& page, const LivingPlace& place, QueryContext& context,
-                                  LivingVisitor& visitor) {
-  stars_.clear();
-  context.cost.records_examined += store_.read_stars(page, filter_, stars_, context.cost.io);
-  context.cost.stars_read += stars_.size();
-  ties_.note_fans(stars_);
-  context.admit(ties_.bytes());
-  if (!visitor.begin(stars_.corners.size() + ties_.bytes() / sizeof(LivingTriangle))) {
-    return false;
-  }
-  visit_living(stars_, detail_, heights_,
-               [&](const LivingTriangle& t) { offer(t, place, visitor); });
+  stars_.visit_page([](const GridBox&) { return true; },  // what was read meets the box
+                    [&](const LivingTriangle& t) { return is_wanted(t, place); },
+                    [&](const LivingTriangle& t) { visitor.take(t); });
   return true;
 }
 
 bool LivingReader::is_wanted(const LivingTriangle& t, const LivingPlace& place) const {
   return meets_heights(t, place, heights_) && (!place.wanted || place.wanted(t));
-}
-
-void LivingReader::offer(const LivingTriangle& t, const LivingPlace& place,
-                         LivingVisitor& visitor) {
-  if (!meets(box_of(t), place.box) || !is_wanted(t, place)) {
-    return;
-  }
-  if (!ties_.set_aside(t)) {
-    visitor.take(t);
-  }
 }
 
 }  // namespace ptin

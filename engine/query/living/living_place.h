@@ -7,7 +7,8 @@
 #include <functional>
 #include <span>
 
-#include "engine/query/living/living_ties.h"
+#include "engine/query/living/level_stars.h"
+#include "engine/query/living/living_visitor.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
@@ -22,31 +23,12 @@ struct LivingPlace {
   Interval heights = kAllHeights;
   /// A further condition of pages (StarFilter::also); borrowed; null: none.
   const StarPredicate* stars = nullptr;
-  bool asks_each_star = false;  ///< StarFilter::also_of_stars.
+  bool asks_each_star = false;  ///< LivingFilter::each is `stars`.
   /// Ascending ordered heights, borrowed: triangles with a step within what their corners span
-  /// (storage/attributes.h, steps_within()). Empty: all.
+  /// (steps_within()). Empty: all.
   std::span<const std::uint64_t> steps;
   /// A further condition of a triangle; none: all are wanted.
   std::function<bool(const LivingTriangle&)> wanted;
-};
-
-/// Takes the triangles of a place.
-class LivingVisitor {
- public:
-  LivingVisitor() = default;
-  LivingVisitor(const LivingVisitor&) = delete;
-  LivingVisitor& operator=(const LivingVisitor&) = delete;
-  virtual ~LivingVisitor() = default;
-  /// Called once, before a page is read: about so many records are on the pages that will be. False
-  /// ends it.
-  virtual bool expect(std::uint64_t /*records*/) { return true; }
-  /// Called before the triangles of T0, and of each page: at most so many come, and those that the
-  /// level has not decided yet. False ends it.
-  virtual bool begin(std::size_t /*most_triangles*/) { return true; }
-  /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles
-  /// nothing more is asked yet. True: it took them; false: the triangles come one by one.
-  virtual bool take_stars(const LivingStars& /*stars*/) { return false; }
-  virtual void take(const LivingTriangle& t) = 0;
 };
 
 /// Reads places of the TIN of one level of detail, one after the other. Threads: one owner.
@@ -54,7 +36,7 @@ class LivingReader {
  public:
   /// @param terrain, detail  Borrowed for the life of the reader.
   LivingReader(const OpenedTerrain& terrain, const Detail& detail)
-      : store_(terrain.store()), heights_(store_.facts().heights), detail_(detail), ties_(detail) {}
+      : store_(terrain.store()), heights_(store_.facts().heights), stars_(store_, detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
   /// of the file, then those that the level tells last. False when the visitor ended it.
@@ -73,19 +55,12 @@ class LivingReader {
   template <class Page>
   bool take_page(const Page& page, const LivingPlace& place, QueryContext& context,
                  LivingVisitor& visitor);
-  template <class Page>
-  bool take_tied_page(const Page& page, const LivingPlace& place, QueryContext& context,
-                      LivingVisitor& visitor);
   [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
-  void offer(const LivingTriangle& t, const LivingPlace& place, LivingVisitor& visitor);
 
   const StoreFile& store_;
   HeightEncoding heights_;
-  const Detail& detail_;
-  StarFilter filter_;
-  LivingStars living_;
-  StarredRecords stars_;  ///< Whole, where the level cuts between records of one error.
-  LivingTies ties_;
+  LivingFilter filter_;
+  LevelStars stars_;
 };
 
 }  // namespace ptin

@@ -21,17 +21,29 @@ LivingTies::Keys LivingTies::keys_of(const LivingTriangle& t) {
 
 /// A fan has the triangles of w and two neighbours on the ring. Where a ring begins:
 /// storage/star.h.
-void LivingTies::note_fans(const StarredRecords& stars) {
-  for (std::size_t i = 0; i < stars.size() && !detail_->is_by_error(); ++i) {
-    const VertexSplit& r = stars.splits[i];
-    if (static_cast<double>(r.error) != detail_->level() || !detail_->keeps(place_of(r))) {
+void LivingTies::note_fans(LivingStars& living) {
+  LivingCorner* first = living.corners.data();
+  for (std::size_t i = 0; i < living.stars.size() && !detail_->is_by_error(); ++i) {
+    const LivingStar& star = living.stars.data()[i];
+    LivingCorner* const end = living.corners.data() + star.corner_end;
+    std::span<LivingCorner> ring(first, end);
+    first = end;
+    if (!star.is_tied) {
       continue;
     }
-    const std::span<const RingCorner> ring = stars.ring(i);
-    const bool ends_at_w = (r.flags & VertexSplit::kNoLeft) != 0;
-    const GridPoint w = (ends_at_w ? ring.back() : ring.front()).position;
-    const std::span<const RingCorner> others =
-        ends_at_w ? ring.first(ring.size() - 1) : ring.subspan(1);
+    const auto error = static_cast<float>(detail_->level());  // it was one
+    if (!detail_->keeps(RecordPlace{error, star.rank, key_of(star.u)})) {
+      for (LivingCorner& c : ring) {
+        c.flags &= static_cast<std::uint8_t>(~unsigned{LivingCorner::kLives});
+      }
+      continue;
+    }
+    if (ring.back().position == ring.front().position) {
+      ring = ring.first(ring.size() - 1);
+    }
+    const GridPoint w = (star.ends_at_w ? ring.back() : ring.front()).position;
+    const std::span<const LivingCorner> others =
+        star.ends_at_w ? ring.first(ring.size() - 1) : ring.subspan(1);
     for (std::size_t k = 0; k + 1 < others.size(); ++k) {
       fans_.push_back(ascending(w, others[k].position, others[k + 1].position));
     }

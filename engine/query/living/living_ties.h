@@ -13,16 +13,6 @@
 
 namespace ptin {
 
-/// Calls visit(const LivingTriangle&) for each triangle of the stars that may live at a level of
-/// detail: LivingTies tells of which it is not certain.
-template <class Visit>
-void visit_living(const StarredRecords& stars, const Detail& detail, const HeightEncoding& heights,
-                  const Visit& visit) {
-  visit_living(
-      stars, detail.level(), heights,
-      [&](const VertexSplit& r) { return detail.keeps(place_of(r)); }, visit);
-}
-
 /// Asks for the stars that a level of detail needs.
 inline void set_level(const Detail& detail, StarFilter& filter) noexcept {
   filter.level = detail.level();
@@ -33,7 +23,7 @@ inline void set_level(const Detail& detail, StarFilter& filter) noexcept {
 /// triangle is gone exactly when it stands in the fan of a record of error E that the level keeps,
 /// which the star of that record tells. The star's box holds the triangle, and its heights those of
 /// the triangle: so a search that has read all that may hold the triangle has read the star.
-/// Of a level of error nothing is set aside. Threads: one owner.
+/// A level of error sets nothing aside. Threads: one owner.
 class LivingTies {
  public:
   /// @param detail  Borrowed.
@@ -43,11 +33,12 @@ class LivingTies {
     undecided_.clear();
     fans_.clear();
   }
-  /// Notes the fans of the records kept. The filter of the stars is that of set_level().
-  void note_fans(const StarredRecords& stars);
+  /// Notes the fans of tied stars whose records are kept, and lets no triangle live of those whose
+  /// records are not. The filter of the stars is that of set_level().
+  void note_fans(LivingStars& living);
   /// True for a triangle that is set aside until settle().
   [[nodiscard]] bool set_aside(const LivingTriangle& t) {
-    if (detail_->is_by_error() || static_cast<double>(t.death) != detail_->level()) {
+    if (!t.is_tied || detail_->is_by_error()) {
       return false;
     }
     undecided_.push_back(t);

@@ -56,7 +56,7 @@ class LivingTin : private LivingVisitor {
   std::uint64_t most_bytes_ = 0;
   double triangles_of_record_ = 0.5;  ///< About, by what was gathered last.
   std::uint64_t bytes_wanted_ = 0;
-  std::size_t room_ = 0;  ///< Of vertices, in the table.
+  std::size_t room_ = 0;  ///< Vertices that the table has room for.
   /// Triangles whose corners are being fetched from the table: a look-up by key misses the caches.
   std::array<LivingTriangle, 32> taken_;
   std::size_t waiting_ = 0;

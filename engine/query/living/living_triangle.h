@@ -12,9 +12,8 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/interval.h"
-#include "storage/living_stars.h"
-#include "storage/star.h"
-#include "storage/store_file.h"
+#include "engine/query/living/living_stars.h"
+#include "storage/coarsest_tin.h"
 
 namespace ptin {
 
@@ -28,7 +27,7 @@ struct LivingTriangle {
   };
   std::array<Corner, 3> corner;  ///< Counter-clockwise.
   bool is_void = false;
-  float death = kLivesOn;  ///< As RingCorner::death.
+  bool is_tied = false;  ///< It dies at the level's own error: LivingTies tells whether it lives.
   /// Most vertical distance to the full surface where both are surface, height's unit; +infinity
   /// for a triangle of T0.
   double deviation = kInfinity;
@@ -39,39 +38,8 @@ struct LivingTriangle {
   return united(united(box_of(t.corner[0].position), t.corner[1].position), t.corner[2].position);
 }
 
-/// Calls visit(const LivingTriangle&) for each triangle that dies at a level or below it (negative:
-/// never) of the stars whose records are kept.
-template <class Keeps, class Visit>
-void visit_living(const StarredRecords& stars, double level, const HeightEncoding& heights,
-                  const Keeps& keeps, const Visit& visit) {
-  for (std::size_t i = 0; i < stars.size(); ++i) {
-    const VertexSplit& r = stars.splits[i];
-    if (!keeps(r)) {
-      continue;
-    }
-    const std::span<const RingCorner> ring = stars.ring(i);
-    const std::size_t triangles = ring.size() - (has_closed_ring(r) ? 0 : 1);
-    LivingTriangle t;
-    t.corner[0] = {r.u, r.height, (r.flags & VertexSplit::kVertexVoid) == 0};
-    t.deviation = r.deviation;
-    t.heights = {heights.code(r.height_lo), heights.code(r.height_hi)};
-    const auto corner_of_ring = [](const RingCorner& c) {
-      return LivingTriangle::Corner{c.position, c.height, (c.flags & RingCorner::kNoHeight) == 0};
-    };
-    for (std::size_t k = 0; k < triangles; ++k) {
-      if (ring[k].death <= level) {
-        t.corner[1] = corner_of_ring(ring[k]);
-        t.corner[2] = corner_of_ring(ring[k + 1 == ring.size() ? 0 : k + 1]);
-        t.is_void = (ring[k].flags & RingCorner::kVoid) != 0;
-        t.death = ring[k].death;
-        visit(t);
-      }
-    }
-  }
-}
-
 /// Calls visit(const LivingTriangle&) for each triangle that lives and whose box is wanted:
-/// wants(const GridBox&). Of them `death` is not known.
+/// wants(const GridBox&).
 template <class Wants, class Visit>
 void visit_living(const LivingStars& living, const HeightEncoding& heights, const Wants& wants,
                   const Visit& visit) {
@@ -92,6 +60,7 @@ void visit_living(const LivingStars& living, const HeightEncoding& heights, cons
         t.corner[1] = corner_of(corner[0]);
         t.corner[2] = corner_of(corner[1]);
         t.is_void = (corner->flags & LivingCorner::kVoid) != 0;
+        t.is_tied = (corner->flags & LivingCorner::kTied) != 0;
         visit(t);
       }
     }
@@ -105,15 +74,8 @@ void visit_living(const LivingStars& living, const HeightEncoding& heights, cons
       living, heights, [](const GridBox&) { return true; }, visit);
 }
 
-/// The same for the level at which all errors above it are applied.
-template <class Visit>
-void visit_living(const StarredRecords& stars, double level, const HeightEncoding& heights,
-                  const Visit& visit) {
-  visit_living(
-      stars, level, heights, [&](const VertexSplit& r) { return r.error > level; }, visit);
-}
-
-/// The same for the triangles of T0.
+/// The same for the triangles of T0, which live where they die at the level or below it (negative:
+/// never).
 template <class Visit>
 void visit_living(const CoarsestTin& t0, double level, const Visit& visit) {
   for (const CoarsestTin::T& triangle : t0.triangles) {
@@ -124,7 +86,7 @@ void visit_living(const CoarsestTin& t0, double level, const Visit& visit) {
         t.corner[i] = {v.position, v.height, v.has_height != 0};
       }
       t.is_void = triangle.is_void != 0;
-      t.death = triangle.death;
+      t.is_tied = static_cast<double>(triangle.death) == level;
       visit(t);
     }
   }

@@ -17,5 +17,8 @@ namespace ptin {
 /// of an edge, as the mean of the codes of its corners (walk/walk.h).
 [[nodiscard]] WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights,
                                      Spot q);
+/// The same where weights_of(t, q) are known.
+[[nodiscard]] WeightedCodes codes_in(const LivingTriangle& t, const HeightEncoding& heights, Spot q,
+                                     const std::array<Int128, 3>& weights);
 
 }  // namespace ptin

@@ -10,26 +10,12 @@
 
 namespace ptin {
 
-namespace {
-
-std::uint64_t records_above(const StoreFile& store, double tolerance) {
-  if (tolerance < 0) return store.record_count();
-  std::uint64_t records = 0;
-  for (const ErrorBin& bin : store.error_bins()) {
-    if (bin.upper > tolerance) records += bin.records;
-  }
-  return records;
-}
-
-}  // namespace
-
 struct TinParts::Impl {
   Impl(const OpenedTerrain& of, PartRequest asked)
       : terrain(of),
         request(std::move(asked)),
         context(request.limits, of.store().path()),
         detail(request.detail, terrain.record_source(), context),
-        reader(terrain, detail),
         living(terrain, detail) {
     if (request.region) {
       region.emplace(*request.region, of.store().facts().map);
@@ -43,30 +29,8 @@ struct TinParts::Impl {
   Detail detail;
   std::optional<GridRegion> region;
   std::optional<StarsInRegion> stars;
-  LivingReader reader;
   LivingTin living;
-
-  [[nodiscard]] LivingPlace place_of(const GridBox& box) const {
-    LivingPlace place;
-    place.box = box;
-    place.stars = stars ? &*stars : nullptr;
-    return place;
-  }
 };
-
-namespace {
-
-class CallingVisitor final : public LivingVisitor {
- public:
-  explicit CallingVisitor(const std::function<void(const LivingTriangle&)>& visit)
-      : visit_(visit) {}
-  void take(const LivingTriangle& t) override { visit_(t); }
-
- private:
-  const std::function<void(const LivingTriangle&)>& visit_;
-};
-
-}  // namespace
 
 TinParts::TinParts(const OpenedTerrain& terrain, PartRequest request)
     : impl_(std::make_unique<Impl>(terrain, std::move(request))) {}
@@ -75,16 +39,24 @@ TinParts::TinParts(TinParts&&) noexcept = default;
 TinParts& TinParts::operator=(TinParts&&) noexcept = default;
 
 Tin* TinParts::part(const GridBox& box) {
-  const bool fits = impl_->living.gather(impl_->place_of(box), impl_->request.limits.memory_bytes,
-                                         impl_->context);
+  LivingPlace place;
+  place.box = box;
+  place.stars = impl_->stars ? &*impl_->stars : nullptr;
+  const bool fits = impl_->living.gather(place, impl_->request.limits.memory_bytes, impl_->context);
   impl_->terrain.store().pages().check_unchanged();
   return fits ? &impl_->living.tin() : nullptr;
 }
 
-void TinParts::visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit) {
-  CallingVisitor visitor(visit);
-  impl_->reader.read(impl_->place_of(box), impl_->context, visitor);
-  impl_->terrain.store().pages().check_unchanged();
+Tin* TinParts::part_for(const GridCell& cell, const GridBox& box) {
+  Tin* const found = part(box);
+  if (found == nullptr && cell.level == 0) {
+    throw Error(ErrorCode::resource_exhausted,
+                "what meets a single position of the grid takes more memory than the " +
+                    std::to_string(impl_->request.limits.memory_bytes) +
+                    " bytes of a part: give more memory",
+                impl_->terrain.store().path());
+  }
+  return found;
 }
 
 std::uint64_t TinParts::triangles() const noexcept {
@@ -101,27 +73,16 @@ void walk_cells(TinParts& parts,
                 const std::function<void(const GridCell& cell, Tin& part, double done)>& visit) {
   const StoreFile& store = parts.terrain().store();
   const QueryLimits& limits = parts.request().limits;
-  Tin* part = nullptr;
-  const auto fits = [&](const GridCell& cell, double share) {
+  work_on_cells(store.facts().bounds, [&](const GridCell& cell, double share, double done) {
     stop_if_asked(limits.stop, "the walk over the terrain", store.path());
     // A search of the index lists all pages: not worth it for cells that are far too large anyway.
     const auto expected =
         static_cast<std::uint64_t>(static_cast<double>(parts.triangles()) * share);
-    const bool is_hopeless = LivingTin::bytes_for(expected) / 16 > limits.memory_bytes;
-    part = is_hopeless ? nullptr : parts.part(cell.box());
+    const bool is_hopeless =
+        cell.level > 0 && LivingTin::bytes_for(expected) / 16 > limits.memory_bytes;
+    Tin* const part = is_hopeless ? nullptr : parts.part_for(cell, cell.box());
+    if (part != nullptr) visit(cell, *part, done);
     return part != nullptr;
-  };
-  walk_fitting_cells(store.facts().bounds, fits, [&](const GridCell& cell, double done) {
-    if (cell.level == 0) {  // a single position, which is not asked about
-      part = parts.part(cell.box());
-    }
-    if (part == nullptr) {
-      throw Error(ErrorCode::resource_exhausted,
-                  "what meets a single position of the grid takes more memory than the " +
-                      std::to_string(limits.memory_bytes) + " bytes of a part: give more memory",
-                  store.path());
-    }
-    visit(cell, *part, done);
   });
 }
 

@@ -12,11 +12,10 @@
 #include "engine/geometry/box.h"
 #include "engine/memory_units.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/living/grid_cell.h"
-#include "engine/query/living/living_triangle.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
 
@@ -24,7 +23,7 @@ namespace ptin {
 struct PartRequest {
   std::optional<Region> region;  ///< What to look at, map units; none: everything.
   DetailRequest detail;          ///< The TIN of which the parts are, the same for every region.
-  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Of one part.
+  QueryLimits limits{.memory_bytes = kMemoryOfParts};  ///< Limits of one part.
 };
 
 /// The parts of a TIN, one after the other. Threads: one owner.
@@ -44,9 +43,10 @@ class TinParts {
   /// @throws Error corruption, io_error, cancelled
   /// Cost: as LivingTin::gather().
   [[nodiscard]] Tin* part(const GridBox& box);
-
-  /// Hands the same triangles to `visit`, in constant memory but for LivingReader::read().
-  void visit(const GridBox& box, const std::function<void(const LivingTriangle&)>& visit);
+  /// The part of a box that a cell needs. Null where the cell is to be cut into four.
+  /// @throws Error resource_exhausted  the cell is a single position and its part does not fit
+  ///               as part()
+  [[nodiscard]] Tin* part_for(const GridCell& cell, const GridBox& box);
 
   /// Triangles of the whole TIN, about, by the table of errors: at most one bin of errors too many.
   [[nodiscard]] std::uint64_t triangles() const noexcept;

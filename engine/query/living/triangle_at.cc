@@ -20,8 +20,8 @@ namespace {
 constexpr double kRecordsOfSpot = 128;
 /// So few spots of a region that is not dense are looked for one by one.
 constexpr std::size_t kFewSpots = 16;
-/// Of a far file so many are looked for together, wherever they lie: pages too many are read, and few
-/// rounds of them are waited for.
+/// Spots that are looked for together in a far file, wherever they lie: some pages too many are
+/// read, but few rounds are waited for.
 constexpr std::size_t kFewFarSpots = 1024;
 /// So many of the pages that a directory names are read first for each spot: of a thousand spots of the
 /// finest TIN all but a few need no more.
@@ -112,7 +112,7 @@ class Finder {
   const StoreFile& store_;
   QueryContext& context_;
   std::uint64_t held_;
-  StarFilter filter_;
+  LivingFilter filter_;
   std::vector<StarPage> pages_;
   LevelStars stars_;
 };
@@ -168,7 +168,7 @@ class Finder::SmallestFirst final : public BestStarVisitor {
       : finder_(finder), spot_(spot), found_(found) {}
   [[nodiscard]] Merit bound(const StarAttributes& a) const override { return {-area_of(a.box)}; }
   [[nodiscard]] Merit bound_of_node(const StarAttributes& a, std::uint32_t level) const override {
-    // Of a node's children the larger ones hold the spot: their boxes are about an eighth of its own.
+    // The larger children of a node hold the spot: their boxes are about an eighth of its own.
     constexpr double kShareOfChild = 1.0 / 8;
     double area = area_of(a.box) * kShareOfChild;
     for (; level > 0; --level) {

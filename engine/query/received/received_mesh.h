@@ -19,7 +19,7 @@ namespace ptin {
 /// A mesh, and what is known of it. Both are borrowed.
 struct ReceivedMesh {
   const Tin& tin;
-  /// `free_of_voids` as the metadata of the stream tell it.
+  /// `free_of_voids` as the metadata of the stream state it.
   const StoreFacts& facts;
   /// The bounds at the places that are asked. `complete`: no record of the file is missing there.
   Certificate certificate;

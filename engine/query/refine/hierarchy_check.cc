@@ -15,11 +15,11 @@
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/living/grid_cell.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/shape/grid_cell.h"
 #include "engine/stop.h"
 
 namespace ptin {
@@ -33,7 +33,7 @@ struct CellRecord {
   VertexSplit split;
   std::uint32_t page;          ///< Modulo 2^32, for faults.
   std::uint32_t degree;        ///< Corners of its ring.
-  std::uint64_t first_corner;  ///< Of its ring, among all of the cell.
+  std::uint64_t first_corner;  ///< First corner of its ring, among all of the cell.
 };
 
 /// About so many corners have rings at most, over a page.
@@ -119,7 +119,7 @@ class HierarchyCheck {
   std::uint64_t dying_ = 0;     ///< Triangles of stars and T0 that are said to die.
   std::uint64_t deaths_ = 0;    ///< Triangles that a record replaces.
 
-  // Of the cell at hand:
+  // The cell at hand:
   std::vector<CellRecord> records_;
   std::vector<RingCorner> corners_;
   std::vector<std::uint32_t> order_;
@@ -140,7 +140,6 @@ void HierarchyCheck::run() {
   const StoreFile& store = terrain_.store();
   const std::uint64_t limit = request_.limits.memory_bytes;
   const auto is_small_enough = [&](const GridCell& cell, double share) {
-    context_.check_stop();
     const std::uint64_t even =
         cell_bytes(static_cast<std::uint64_t>(static_cast<double>(store.record_count()) * share));
     // A search of the index lists all pages: not worth it for cells that are far too large anyway.
@@ -150,9 +149,12 @@ void HierarchyCheck::run() {
     // in each of its parts.
     return bytes <= std::min(limit, kCellBytes) || (bytes <= limit && bytes / 4 > even);
   };
-  walk_fitting_cells(store.facts().bounds, is_small_enough, [&](const GridCell& cell, double done) {
+  work_on_cells(store.facts().bounds, [&](const GridCell& cell, double share, double done) {
+    context_.check_stop();
+    if (cell.level > 0 && !is_small_enough(cell, share)) return false;
     look_into(cell);
     if (request_.progress) request_.progress(done);
+    return true;
   });
   store.pages().check_unchanged();
   if (report_.is_sound() && report_.records != store.record_count()) {
@@ -403,7 +405,7 @@ float HierarchyCheck::death_of(TriangleId t, const VertexSplit& r, const Star& s
   for (const RingCorner& c : ring) {
     if (own < 3 && c.position == corner[(own + 1) % 3]) return c.death;
   }
-  return kLivesOn;  // its star is another than its split makes, which is told of the maker
+  return kLivesOn;  // its star is another than its split makes, which is reported of the maker
 }
 
 void HierarchyCheck::count_deaths(const CellRecord& r) {

@@ -47,8 +47,8 @@ struct HierarchyReport {
 ///   die.
 /// The mesh of each cell is validated (mesh/validate.h). Where no fault is found, the theorem of
 /// engine/DESIGN.md, section 2.4, holds for the file, and that of section 2.10, so that no question
-/// meets a record that does not fit, and answers by stars are those by splits. What the source alone can tell is not looked at: whether errors and deviations are
-/// large enough.
+/// meets a record that does not fit, and answers by stars are those by splits. What only the source
+/// can show is not looked at: whether errors and deviations are large enough.
 ///
 /// Attributes are looked at in the cell that holds w. That suffices (by induction over the order of
 /// falling rank): let the records before b be without fault. They are saturated, so those whose roi

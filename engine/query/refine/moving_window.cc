@@ -85,8 +85,8 @@ std::vector<PageId> MovingWindow::search(const AttributePredicate& predicate,
   return pages;
 }
 
-/// Of the pages found, those whose applied records may have to change. Asks for the memory that the
-/// change may take.
+/// The pages whose applied records may have to change, among those found. Asks for the memory that
+/// the change may take.
 std::vector<MovingWindow::Candidate> MovingWindow::candidates(const AttributePredicate& predicate,
                                                               QueryContext& context) const {
   std::vector<Candidate> result;

@@ -35,8 +35,8 @@ struct MovingWindowOptions {
 struct MoveResult {
   std::uint64_t entered = 0;         ///< Splits made.
   std::uint64_t left = 0;            ///< Splits undone.
-  std::uint64_t vertices = 0;        ///< Of the mesh, T0 and those without a height included.
-  std::uint64_t triangles = 0;       ///< Of the mesh.
+  std::uint64_t vertices = 0;        ///< The mesh's, T0 and those without a height included.
+  std::uint64_t triangles = 0;       ///< Triangles of the mesh.
   std::uint64_t pages_examined = 0;  ///< Pages whose records were tested, read or from the cache.
   Certificate certificate;           ///< Over the whole domain.
   /// Pages from the cache do not count as read. records_retrieved counts the records that entered.
@@ -113,7 +113,7 @@ class MovingWindow {
   OpenedTerrain terrain_;
   MovingWindowOptions options_;
   Refinement refinement_;
-  PredicatePtr predicate_;                        ///< Of the mesh; null: nothing is applied.
+  PredicatePtr predicate_;                        ///< The mesh's own; null: nothing is applied.
   std::unordered_map<std::uint64_t, Held> held_;  ///< By page; only pages with an applied record.
   AppliedErrors errors_;
   bool is_spoilt_ = false;  ///< Changed in part: to be reset before it is used again.

@@ -51,7 +51,7 @@ struct RefinedTin {
   Tin tin;  ///< Compact: every vertex and triangle is alive (kMeetingRegion: renumbered).
   /// Filled on request: for each triangle the page of the record that made it, or kNone for T0.
   std::vector<std::uint32_t> page_of_triangle;
-  std::uint64_t vertices = 0;  ///< Of the mesh, those without a height included.
+  std::uint64_t vertices = 0;  ///< Vertices of the mesh, those without a height included.
   std::uint64_t void_vertices = 0;
   std::uint64_t triangles = 0;
   std::uint64_t t0_vertices = 0;

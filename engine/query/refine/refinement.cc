@@ -111,14 +111,9 @@ std::uint64_t bytes_of(const Tin& tin) noexcept {
          VertexTable::bytes_for(tin.vertices.size());
 }
 
-Refinement::Refinement(const Tin& t0, bool track_pages) : track_pages_(track_pages) { restart(t0); }
-
-void Refinement::restart(const Tin& t0) {
-  tin_ = t0;
+Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_(track_pages) {
   has_void_vertex_ =
       std::find(tin_.has_height.begin(), tin_.has_height.end(), 0) != tin_.has_height.end();
-  free_vertices_.clear();
-  free_triangles_.clear();
   ids_.reset(tin_.vertices.capacity());
   for (VertexId v = 0; v < tin_.vertices.size(); ++v) {
     ids_.insert(tin_, v);

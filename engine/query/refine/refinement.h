@@ -28,10 +28,6 @@ class Refinement {
   /// @param track_pages  Keep for each triangle the page of the record that made it.
   explicit Refinement(const Tin& t0, bool track_pages = false);
 
-  /// Begins anew with a copy of `t0`, in the memory that is there: for several refinements one
-  /// after the other.
-  void restart(const Tin& t0);
-
   /// Applies `splits` in the order of refine/apply_order.h, and numbers vertices and triangles
   /// along that order: so what lies near in the terrain mostly lies near in memory. Together with
   /// what was applied before they must be closed under dependency, as the records of a monotone
@@ -117,10 +113,10 @@ class Refinement {
   std::vector<std::uint32_t> order_;
   std::vector<VertexId> free_vertices_;  ///< Removed: their places are used again.
   std::vector<TriangleId> free_triangles_;
-  bool has_void_vertex_ = false;  ///< Since the restart a vertex without a height was there.
+  bool has_void_vertex_ = false;  ///< A vertex without a height is, or was, there.
   bool track_pages_;
   std::vector<std::uint32_t> vertex_pages_,
-      triangle_pages_;  ///< Beside the mesh's arrays, when tracked.
+      triangle_pages_;  ///< The page behind each vertex and triangle, when tracked.
 };
 
 }  // namespace ptin

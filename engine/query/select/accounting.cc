@@ -26,6 +26,7 @@ void QueryContext::throw_cancelled() const {
 
 void QueryContext::throw_exhausted(std::uint64_t bytes) const {
   const auto size = [](std::uint64_t b) {
+    if (b < 10 << 10) return std::to_string(b) + " bytes";
     return b < (16 << 20) ? std::to_string((b + 0x3FF) >> 10) + " KiB"
                           : std::to_string((b + 0xFFFFF) >> 20) + " MiB";
   };

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/geometry/affine.h"
+#include "engine/query/shape/bins_along_y.h"
 
 namespace ptin {
 
@@ -21,7 +21,6 @@ class PolygonSides {
   /// polygons that share a side compute the same from it.
   struct Side {
     MapPoint low, high;
-    std::size_t first_bin = 0;  ///< Of those that it reaches.
   };
   /// A closed box.
   struct Extent {
@@ -38,18 +37,13 @@ class PolygonSides {
   /// Calls visit(side), once each, for all sides whose box, widened by the slack, meets the box.
   template <class Visit>
   void visit_near(const Extent& box, const Visit& visit) const {
-    if (sides_.empty()) return;
-    const std::size_t first = bin_of(box.min_y - slack_), last = bin_of(box.max_y + slack_);
-    for (std::size_t bin = first; bin <= last; ++bin) {
-      for (std::uint32_t i = bin_begin_[bin]; i < bin_begin_[bin + 1]; ++i) {
-        const Side& side = sides_[in_bin_[i]];
-        if (bin == std::max(side.first_bin, first) && meets(side, box)) visit(side);
-      }
-    }
+    bins_.visit(box.min_y - slack_, box.max_y + slack_, [&](std::uint32_t i) {
+      if (meets(sides_[i], box)) visit(sides_[i]);
+    });
   }
 
-  /// Whether an odd number of rings surround a place. Of places within the slack of a side the answer
-  /// is either.  Cost: the sides that reach its y, or nearly so.
+  /// Whether an odd number of rings surround a place. Within the slack of a side the answer is
+  /// either. Cost: the sides that reach its y, or nearly so.
   [[nodiscard]] bool surround(MapPoint p) const;
 
  private:
@@ -58,13 +52,10 @@ class PolygonSides {
     return side.low.x - slack_ <= box.max_x && box.min_x <= side.high.x + slack_ &&
            min_y - slack_ <= box.max_y && box.min_y <= max_y + slack_;
   }
-  [[nodiscard]] std::size_t bin_of(double y) const noexcept;
-  void sort_into_bins();
 
   std::vector<Side> sides_;
-  /// Sides by bins along y: those of bin i are in_bin_[bin_begin_[i], bin_begin_[i + 1]).
-  std::vector<std::uint32_t> bin_begin_, in_bin_;
-  double low_ = 0.0, bins_per_unit_ = 0.0, slack_ = 0.0;
+  BinsAlongY bins_;
+  double slack_ = 0.0;
 };
 
 }  // namespace ptin

@@ -3,6 +3,7 @@
 // The limits that every question is asked with.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <stop_token>
 
@@ -17,6 +18,13 @@ struct QueryLimits {
   /// refused (resource_exhausted).
   std::uint64_t memory_bytes = kMemoryOfQuestion;
   std::stop_token stop{};  ///< Looked at in every long loop.
+
+  /// The limits of a part of the question: `part` of `parts` equal shares of the memory, and `most`
+  /// bytes of it where that is less.
+  [[nodiscard]] QueryLimits share(std::uint64_t part, std::uint64_t parts,
+                                  std::uint64_t most = UINT64_MAX) const {
+    return {std::min(memory_bytes / parts * part, most), stop};
+  }
 };
 
 }  // namespace ptin

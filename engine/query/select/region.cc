@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;  // unit roundoff u = 2^-53
 constexpr double kFarthest = 1e100;                                   // products of two stay finite
-constexpr std::size_t kMostSlabs = 4096;
 
 /// One coordinate of a map position on the grid, and how far the true one may be away.
 double to_grid(double map_value, double origin, double step, double& slack) {
@@ -78,7 +77,7 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
   } else if (const auto* segment = std::get_if<Segment>(&region)) {
     kind_ = Kind::kSegment;
     add_edge(widened(segment->a, map), widened(segment->b, map));
-    sort_edges_into_slabs();
+    sort_edges_into_bins();
   } else {
     kind_ = Kind::kPolygon;
     const auto& rings = std::get<Polygon>(region).rings;
@@ -88,7 +87,7 @@ GridRegion::GridRegion(const Region& region, const AffineMap& map) {
     for (const auto& ring : rings) {
       add_ring(ring, map);
     }
-    sort_edges_into_slabs();
+    sort_edges_into_bins();
   }
 }
 
@@ -149,52 +148,17 @@ void GridRegion::add_ring(const std::vector<MapPoint>& ring, const AffineMap& ma
   }
 }
 
-/// Monotone in y, so that an edge and a box whose ranges of y meet share a slab.
-std::size_t GridRegion::slab_of(double y) const noexcept {
-  const double slab = (y - min_y_) * slab_scale_;
-  const double last = static_cast<double>(slab_begin_.size() - 2);
-  return static_cast<std::size_t>(std::clamp(slab, 0.0, last));
-}
-
-/// Returns how many entries the lists of that many slabs would have.
-std::uint64_t GridRegion::set_slabs(std::size_t slabs) {
-  slab_begin_.assign(slabs + 1, 0);
-  const double height = max_y_ - min_y_;
-  slab_scale_ = height > 0 ? static_cast<double>(slabs) / height : 0.0;
-  slab_scale_ = std::isfinite(slab_scale_) ? slab_scale_ : 0.0;
-  std::uint64_t entries = 0;
-  for (const Edge& e : edges_) {
-    entries += slab_of(e.max_y) - slab_of(e.min_y) + 1;
-  }
-  return entries;
-}
-
-void GridRegion::sort_edges_into_slabs() {
+void GridRegion::sort_edges_into_bins() {
   min_x_ = min_y_ = kInfinity;
   max_x_ = max_y_ = -min_x_;
+  std::vector<Interval> reaches;
+  reaches.reserve(edges_.size());
   for (const Edge& e : edges_) {
     min_x_ = std::min(min_x_, e.min_x), max_x_ = std::max(max_x_, e.max_x);
     min_y_ = std::min(min_y_, e.min_y), max_y_ = std::max(max_y_, e.max_y);
+    reaches.push_back({e.min_y, e.max_y});
   }
-  std::size_t slabs = std::clamp<std::size_t>(edges_.size() / 2, 1, kMostSlabs);
-  while (set_slabs(slabs) > 8 * edges_.size() && slabs > 1) {
-    slabs /= 2;  // tall edges: fewer slabs keep the lists linear in the edges
-  }
-  for (const Edge& e : edges_) {
-    for (std::size_t s = slab_of(e.min_y); s <= slab_of(e.max_y); ++s) {
-      ++slab_begin_[s + 1];
-    }
-  }
-  for (std::size_t s = 0; s < slabs; ++s) {
-    slab_begin_[s + 1] += slab_begin_[s];
-  }
-  slab_edges_.resize(slab_begin_.back());
-  std::vector<std::uint32_t> next(slab_begin_.begin(), slab_begin_.end() - 1);
-  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    for (std::size_t s = slab_of(edges_[i].min_y); s <= slab_of(edges_[i].max_y); ++s) {
-      slab_edges_[next[s]++] = i;
-    }
-  }
+  bins_ = BinsAlongY(reaches);
 }
 
 bool GridRegion::touches(const Edge& e, const GridBox& box) noexcept {
@@ -229,25 +193,16 @@ bool GridRegion::touches(const Edge& e, const GridPoint (&t)[3]) noexcept {
 
 template <typename Test>
 bool GridRegion::any_edge(const GridBox& box, const Test& test) const noexcept {
-  const std::size_t last = slab_of(box.max_y);
-  for (std::size_t s = slab_of(box.min_y); s <= last; ++s) {
-    for (std::uint32_t i = slab_begin_[s]; i < slab_begin_[s + 1]; ++i) {
-      if (test(edges_[slab_edges_[i]])) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return bins_.any(box.min_y, box.max_y, [&](std::uint32_t i) { return test(edges_[i]); });
 }
 
 /// Even-odd rule along a ray to the east. Where no edge touches {p}, every sign below is certain,
 /// so the answer is that of the exact polygon and is the same for all points of a box that no edge
 /// touches: this is what makes meets(box) monotone.
 GridRegion::Side GridRegion::side_of(GridPoint p) const noexcept {
-  const std::size_t slab = slab_of(p.y);
   bool inside = false;
-  for (std::uint32_t i = slab_begin_[slab]; i < slab_begin_[slab + 1]; ++i) {
-    const Edge& e = edges_[slab_edges_[i]];
+  for (const std::uint32_t i : bins_.at(p.y)) {
+    const Edge& e = edges_[i];
     if ((e.ay <= p.y) == (e.by <= p.y) || p.x > e.max_x) {
       continue;
     }

@@ -11,6 +11,7 @@
 #include "engine/geometry/affine.h"
 #include "engine/geometry/box.h"
 #include "engine/geometry/point.h"
+#include "engine/query/shape/bins_along_y.h"
 
 namespace ptin {
 
@@ -116,9 +117,7 @@ class GridRegion {
   void hold(const GridWindow& window) noexcept;
   void add_edge(const WidenedPoint& a, const WidenedPoint& b);
   void add_ring(const std::vector<MapPoint>& ring, const AffineMap& map);
-  void sort_edges_into_slabs();
-  std::uint64_t set_slabs(std::size_t slabs);
-  [[nodiscard]] std::size_t slab_of(double y) const noexcept;
+  void sort_edges_into_bins();
   [[nodiscard]] Side side_of(GridPoint p) const noexcept;
   [[nodiscard]] bool rectangle_meets(const GridPoint (&triangle)[3]) const noexcept;
   template <typename Test>
@@ -126,12 +125,9 @@ class GridRegion {
 
   Kind kind_ = Kind::kRectangle;
   double min_x_ = 0, min_y_ = 0, max_x_ = 0,
-         max_y_ = 0;  ///< Of the rectangle, or around all edges; widened.
+         max_y_ = 0;  ///< The rectangle, or a box around all edges; widened.
   std::vector<Edge> edges_;
-  /// Edges by horizontal slabs: those of slab i are slab_edges_[slab_begin_[i], slab_begin_[i +
-  /// 1]).
-  std::vector<std::uint32_t> slab_begin_, slab_edges_;
-  double slab_scale_ = 0;
+  BinsAlongY bins_;  ///< Of the edges.
   double widening_ = 0;
 };
 

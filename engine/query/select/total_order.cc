@@ -167,7 +167,7 @@ class Search {
   std::vector<PendingSplit> found_, order_;
   std::vector<PageId> read_;      ///< Ascending.
   std::uint64_t grown_ = 0;       ///< By all of found_.
-  RecordPlace last_{};            ///< Of found_, once it is full.
+  RecordPlace last_{};            ///< Last of found_, once it is full.
   bool is_one_too_many_ = false;  ///< The last of found_ exceeds the growth.
   double dropped_ = -1.0;         ///< Largest error of a record found and given up.
   double left_ = -1.0;            ///< No record in an unread page has a larger error.

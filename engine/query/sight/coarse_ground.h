@@ -13,7 +13,7 @@
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/opened_terrain.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 

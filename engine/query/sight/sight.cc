@@ -14,7 +14,6 @@
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/sight/sight_measure.h"
-#include "engine/query/sight/sight_search.h"
 #include "engine/query/sight/sight_stars.h"
 
 namespace ptin {
@@ -62,26 +61,25 @@ int sign_above(double height, const LocatedPoint& ground, const HeightEncoding& 
 
 class SightSolver::Impl {
  public:
-  Impl(const OpenedTerrain& terrain, SightRequest request, std::uint64_t coarse_records);
+  /// @param way  None: by the triangles that live at the level.
+  Impl(const OpenedTerrain& terrain, SightRequest request, std::uint64_t coarse_records,
+       std::optional<SightWay> way);
   SightResult solve(const SightPair& pair);
 
   QueryCost base_cost;
 
  private:
-  [[nodiscard]] bool is_by_stars() const noexcept {
-    return request_.by == AnswerBy::kStars && !terrain_.uses_other_index();
-  }
   [[nodiscard]] Spot spot_of_end(MapPoint p, double height) const;
   [[nodiscard]] double ground_length(const SightPair& pair) const;
-  /// @param search  SightStars or SightSearch.
-  template <class Search>
-  void answer(Search search, const SightPair& pair, SightResult& result) const;
-  template <class Search>
-  void answer_defined(Search& search, const SightPair& pair, SightResult& result) const;
+  [[nodiscard]] std::unique_ptr<SightSearch> search_along(const SightLine& line,
+                                                          QueryContext& context) const;
+  void answer(SightSearch& search, const SightPair& pair, SightResult& result) const;
+  void answer_defined(SightSearch& search, const SightPair& pair, SightResult& result) const;
   void answer_upright(const SightPair& pair, Spot at, SightResult& result) const;
 
   const OpenedTerrain terrain_;
   SightRequest request_;
+  std::optional<SightWay> way_;
   StoreFacts store_facts_;
   SightFacts facts_;
   SpotMap map_;
@@ -90,9 +88,10 @@ class SightSolver::Impl {
 };
 
 SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
-                        std::uint64_t coarse_records)
+                        std::uint64_t coarse_records, std::optional<SightWay> way)
     : terrain_(terrain),
       request_(std::move(request)),
+      way_(way),
       store_facts_(terrain.store().facts()),
       map_(store_facts_.map, store_facts_.bounds),
       detail_(terrain.store()) {
@@ -112,7 +111,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   // A certified error of 0 does not settle the voids: they may differ between samples.
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
-  if (coarse_records > 0 && request_.verdict_only && is_by_stars()) {
+  if (coarse_records > 0 && request_.verdict_only) {
     coarse_.emplace(terrain_, std::max(error_of_first(store, coarse_records), detail_.tolerance()),
                     context);
   }
@@ -154,14 +153,8 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
   } else {
     result.length = ground_length(pair);
     const double bend = request_.curvature.drop_at(result.length);
-    if (is_by_stars()) {
-      const SightLine line(facts_, p, q, pair, request_.absolute, bend);
-      answer(SightStars(terrain_, facts_, request_, coarse_ ? &*coarse_ : nullptr, line, context),
-             pair, result);
-    } else {
-      const SightView line(facts_, p, q, pair, request_.absolute, bend);
-      answer(SightSearch(terrain_, facts_, request_, line, context), pair, result);
-    }
+    const SightLine line(facts_, p, q, pair, request_.absolute, bend);
+    answer(*search_along(line, context), pair, result);
     result.cost = context.cost;
   }
   terrain_.store().pages().check_unchanged();
@@ -170,8 +163,17 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
   return result;
 }
 
-template <class Search>
-void SightSolver::Impl::answer(Search search, const SightPair& pair, SightResult& result) const {
+std::unique_ptr<SightSearch> SightSolver::Impl::search_along(const SightLine& line,
+                                                             QueryContext& context) const {
+  if (way_) {
+    return way_->search(terrain_, facts_, request_, line, context);
+  }
+  return std::make_unique<SightStars>(terrain_, facts_, request_, coarse_ ? &*coarse_ : nullptr,
+                                      line, context);
+}
+
+void SightSolver::Impl::answer(SightSearch& search, const SightPair& pair,
+                               SightResult& result) const {
   if (facts_.has_voids || !request_.verdict_only) {
     search.finish_ends();
   }
@@ -189,8 +191,7 @@ void SightSolver::Impl::answer(Search search, const SightPair& pair, SightResult
   }
 }
 
-template <class Search>
-void SightSolver::Impl::answer_defined(Search& search, const SightPair& pair,
+void SightSolver::Impl::answer_defined(SightSearch& search, const SightPair& pair,
                                        SightResult& result) const {
   if (!request_.verdict_only) {
     search.finish_line();
@@ -226,8 +227,8 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, Spot at, SightResu
   }
   LocateRequest request;  // no level of detail: the ground below ends is always exact
   request.limits = request_.limits;
-  request.by = request_.by;
-  const LocateResult located = locate(terrain_, {&pair.a, 1}, request);
+  const auto locate_by = way_ ? way_->locate : &locate;
+  const LocateResult located = locate_by(terrain_, {&pair.a, 1}, request);
   const LocatedPoint& ground = located.points[0];
   result.cost = located.cost;
   result.state_a = result.state_b = ground.state;
@@ -261,7 +262,9 @@ void SightSolver::Impl::answer_upright(const SightPair& pair, Spot at, SightResu
 
 SightSolver::SightSolver(const OpenedTerrain& terrain, SightRequest request,
                          std::uint64_t coarse_records)
-    : impl_(std::make_unique<Impl>(terrain, std::move(request), coarse_records)) {}
+    : impl_(std::make_unique<Impl>(terrain, std::move(request), coarse_records, std::nullopt)) {}
+SightSolver::SightSolver(const OpenedTerrain& terrain, SightRequest request, SightWay way)
+    : impl_(std::make_unique<Impl>(terrain, std::move(request), 0, way)) {}
 SightSolver::~SightSolver() = default;
 SightSolver::SightSolver(SightSolver&&) noexcept = default;
 SightSolver& SightSolver::operator=(SightSolver&&) noexcept = default;
@@ -269,13 +272,5 @@ SightSolver& SightSolver::operator=(SightSolver&&) noexcept = default;
 const QueryCost& SightSolver::base_cost() const noexcept { return impl_->base_cost; }
 
 SightResult SightSolver::solve(const SightPair& pair) { return impl_->solve(pair); }
-
-SightResult sight(const OpenedTerrain& terrain, const SightPair& pair,
-                  const SightRequest& request) {
-  SightSolver solver(terrain, request, 0);
-  SightResult result = solver.solve(pair);
-  result.cost.add_counts(solver.base_cost());
-  return result;
-}
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Lines of sight (paper, section 5.3): only what may decide the answer is looked at.
+// Lines of sight: only what may decide the answer is looked at.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "engine/query/heights/locate.h"
 #include "engine/query/select/detail.h"
@@ -32,19 +33,18 @@ struct SightRequest {
   /// ellipsoid). None: the plane distance in map units.
   std::function<double(MapPoint, MapPoint)> ground_distance;
   double wavelength = 0.0;  ///< Height's unit; above 0 the first Fresnel zone is measured.
-  /// Records that this level leaves out are not read, with these exceptions. The ground below the
-  /// ends is exact all the same. Where a single point hides the line unless it is a void, the
-  /// surface at that point is exact. And by stars the surface is exact in a few points more, those by
-  /// which the answer is most open.
+  /// What this level leaves out is not read, with these exceptions. The ground below the ends is exact
+  /// all the same. Where a single point hides the line unless it is a void, the surface at that point
+  /// is exact. And so it is in a few points more (not as the paper has it), by which the answer is
+  /// most open.
   DetailRequest detail;
-  /// Stop once so many stars were read for one pair, or, by splits, records retrieved. Checked
-  /// before each step, so the last step may overrun it.
+  /// Stop once so many stars were read for one pair, or, as the paper has it, records. Checked before
+  /// each step, so the last step may overrun it.
   std::optional<std::uint64_t> budget;
   /// Only the verdict is wanted. The obstruction is then any point below ground that deciding
   /// showed, and clearances are NaN unless both ends have one position.
   bool verdict_only = false;
   QueryLimits limits;
-  AnswerBy by = AnswerBy::kStars;
 };
 
 /// Hidden: some inner point of the straight line (bent by curvature) lies strictly below the closed
@@ -57,16 +57,16 @@ enum class SightVerdict : std::uint8_t { kVisible, kHidden, kUndecided, kUndefin
 /// A point of the line.
 struct SightPoint {
   MapPoint position;      ///< Map units.
-  double share = 0.0;     ///< Of the way from a to b.
+  double share = 0.0;     ///< Share of the way from a to b.
   double distance = 0.0;  ///< From a over ground, height's unit.
-  double height = 0.0;    ///< Of the line there, height's unit.
+  double height = 0.0;    ///< Height of the line there, height's unit.
 };
 
 struct SightResult {
   SightVerdict verdict = SightVerdict::kUndecided;
   /// What the ends stand on. Exact, unless the budget ended before they were known.
   PointState state_a = PointState::kOutside, state_b = PointState::kOutside;
-  double length = 0.0;  ///< Of the line over ground, height's unit.
+  double length = 0.0;  ///< Length of the line over ground, height's unit.
   /// Set when hidden: where the line first goes below ground. With `verdict_only`, or when not
   /// exact, some point where it is below ground.
   std::optional<SightPoint> obstruction;
@@ -87,13 +87,27 @@ struct SightResult {
   /// Most that the surface may deviate where the line is undecided; 0 when it is decided, infinite
   /// where the budget left the line unread.
   double certified_deviation = 0.0;
-  bool exact = false;  ///< All that the result tells holds of the source.
+  bool exact = false;  ///< All that the result says holds of the source.
   QueryCost cost;
 };
 
-/// Answers pairs one after the other. By stars it keeps a coarse level of the whole terrain in
-/// memory: where no full surface can lie so low that the line passes above it, a verdict reads
-/// nothing, and elsewhere the level tells where to look first.
+class QueryContext;
+class SightLine;
+class SightSearch;
+struct SightFacts;
+
+/// Another way to answer than by the triangles that live at a level (paper/visibility.h).
+struct SightWay {
+  /// Begins the search for what one line needs; all is borrowed.
+  std::unique_ptr<SightSearch> (*search)(const OpenedTerrain&, const SightFacts&,
+                                         const SightRequest&, const SightLine&, QueryContext&);
+  /// The ground at a point, of an upright line.
+  LocateResult (*locate)(const OpenedTerrain&, std::span<const MapPoint>, const LocateRequest&);
+};
+
+/// Answers pairs one after the other. It keeps a coarse level of the whole terrain in memory: where
+/// no full surface can lie so low that the line passes above it, a verdict reads nothing, and
+/// elsewhere the level says where to look first.
 ///
 /// The path is straight in the file's CRS, and distances are proportional along it. (In a
 /// geographic CRS that is true to a thousandth at 100 km and middle latitudes.) Threads: one owner;
@@ -109,6 +123,8 @@ class SightSolver {
   /// cancelled
   SightSolver(const OpenedTerrain& terrain, SightRequest request,
               std::uint64_t coarse_records = kCoarseRecords);
+  /// The same in another way, without a coarse level.
+  SightSolver(const OpenedTerrain& terrain, SightRequest request, SightWay way);
   ~SightSolver();
   SightSolver(SightSolver&&) noexcept;
   SightSolver& operator=(SightSolver&&) noexcept;
@@ -125,9 +141,5 @@ class SightSolver {
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Answers one pair; the cost in the result is the whole cost.  @throws Error as SightSolver
-[[nodiscard]] SightResult sight(const OpenedTerrain& terrain, const SightPair& pair,
-                                const SightRequest& request = {});
 
 }  // namespace ptin

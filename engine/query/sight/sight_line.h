@@ -18,7 +18,7 @@ enum class PieceVerdict : std::uint8_t { kVisible, kHidden, kUndecided };
 /// the line above the full surface. Heights are in the height's unit.
 struct SightPiece {
   double from = 0.0, to = 0.0;                ///< Shares of the way.
-  double ground_from = 0.0, ground_to = 0.0;  ///< Of the surface there; set only on surface.
+  double ground_from = 0.0, ground_to = 0.0;  ///< Heights of the surface there; set on surface.
   double deviation = 0.0;  ///< Most that the full surface deviates from the piece.
   double highest = 0.0;    ///< No point of the full surface is higher.
   bool surface = false;
@@ -42,9 +42,9 @@ struct SightPiece {
 /// What does not change while one terrain is asked.
 struct SightFacts {
   HeightEncoding heights;
-  double file_deviation = 0.0;    ///< Of the file's full TIN from its source.
-  double finest_deviation = 0.0;  ///< Of final pieces: the file's, or that of the level of detail.
-  double min_height = 0.0, max_height = 0.0;  ///< Of the whole terrain.
+  double file_deviation = 0.0;    ///< Deviation of the file's full TIN from its source.
+  double finest_deviation = 0.0;  ///< Deviation of final pieces: the file's, or the level's.
+  double min_height = 0.0, max_height = 0.0;  ///< Heights of the whole terrain.
   const Detail* detail = nullptr;             ///< The level of detail; borrowed.
   bool is_level_asked = false;                ///< A level of detail leaves records out.
   bool has_voids = false;
@@ -116,7 +116,8 @@ class SightLine {
   /// Where pieces of the full TIN are there beside those of a level of detail, they stand in the
   /// place of these. REQUIRES: order_pieces() came before.
   void prefer_exact();
-  /// Decides a piece of surface in rationals, where its bounds do not tell and nothing is left out.
+  /// Decides a piece of surface in rationals, where its bounds do not decide and nothing is left
+  /// out.
   void decide_exactly(SightPiece& piece, const LinePoint& from, const LinePoint& to) const;
   /// Looks at a point in which the line meets the closed surface beside a void, or from outside of
   /// the domain. An end of the line there does not hide the line.
@@ -128,7 +129,7 @@ class SightLine {
   /// True when a vertex hides the line alone: the line passes it between voids, or touches it from
   /// outside of the domain, and the vertex lies above the line.
   [[nodiscard]] bool is_touched_from_below() const noexcept { return touched_ <= 1.0; }
-  /// True when a vertex may hide the line so, and what was left out would tell.
+  /// True when a vertex may hide the line so, and what was left out would decide.
   [[nodiscard]] bool may_be_touched_from_below() const noexcept { return may_be_touched_; }
   /// Share of the way of the first vertex that hides the line so; above 1 when there is none.
   [[nodiscard]] double touched_at() const noexcept { return touched_; }

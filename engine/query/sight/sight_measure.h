@@ -12,7 +12,7 @@ namespace ptin {
 [[nodiscard]] PointState state_of(const SightEnd& end);
 
 /// The point of the line at a share of its way.
-/// @param length  Of the line over ground, height's unit.
+/// @param length  Length of the line over ground, height's unit.
 [[nodiscard]] SightPoint point_at(const SightPair& pair, const SightLine& line, double share,
                                   double length);
 

@@ -1,53 +1,55 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One line of sight by splits: which records to ask for next, until the answer is there.
+// The search for what one line of sight needs to know. Two ways to search differ in what they read
+// next: sight_stars.h, and paper/visibility.h.
 #pragma once
 
-#include <vector>
-
-#include "engine/query/refine/bounded_mesh.h"
-#include "engine/query/sight/sight_predicate.h"
-#include "engine/query/sight/sight_view.h"
+#include "engine/query/sight/sight_line.h"
 
 namespace ptin {
 
-/// Refines T0 along one line: coarse first, and only as far as the questions asked of it need
-/// (paper, section 5.3). Threads: one owner.
+/// One line of sight that is being answered. Threads: one owner.
 class SightSearch {
  public:
+  SightSearch(const SightSearch&) = delete;
+  SightSearch& operator=(const SightSearch&) = delete;
+  virtual ~SightSearch() = default;
+
+  /// What is known of the line so far.
+  [[nodiscard]] virtual const SightLine& line() const noexcept = 0;
+  /// Makes the ground below the ends exact, unless the budget is spent.
+  void finish_ends() {
+    if (!ends_known() && !out_of_budget()) {
+      find_ends();
+    }
+  }
+  /// Finds what is asked of the line beside the verdict, until the budget is spent.
+  virtual void finish_line() = 0;
+  /// The verdict, as far as level of detail and budget let it be known.
+  /// REQUIRES: finish_line() came before, unless the verdict alone is asked for.
+  [[nodiscard]] virtual SightVerdict decide() = 0;
+
+  /// True when all that is asked of the ends is known. Absolute ends are asked for their states
+  /// alone, and only voids can change a state.
+  [[nodiscard]] bool ends_known() const noexcept {
+    return (line().a.known && line().b.known) || (request_.absolute && !facts_.has_voids);
+  }
+
+ protected:
   /// All borrowed for the life of the search.
-  /// @param line  Where to begin: before anything is known.
-  SightSearch(const OpenedTerrain& terrain, const SightFacts& facts, const SightRequest& request,
-              const SightView& line, QueryContext& context);
+  SightSearch(const SightFacts& facts, const SightRequest& request, QueryContext& context)
+      : facts_(facts), request_(request), context_(context) {}
 
-  /// finish_ends() makes the ground below the ends exact; finish_line() makes the whole line as
-  /// fine as the level of detail. Both stop when the budget is spent.
-  void finish_ends();
-  void finish_line();
-  /// Refines until the line is known to be hidden or visible, or nothing more can be known.
-  [[nodiscard]] SightVerdict decide();
-
-  [[nodiscard]] const SightLine& line() const noexcept { return view_; }
-  /// True when all that is asked of the ends is known.
-  [[nodiscard]] bool ends_known() const noexcept;
-
- private:
-  using Stretch = SightPredicate::Stretch;
-
-  [[nodiscard]] bool out_of_budget() const noexcept;
-  [[nodiscard]] double target(double margin, double deviation) const noexcept;
-  [[nodiscard]] std::vector<Stretch> undecided_stretches() const;
-  [[nodiscard]] std::vector<Stretch> unsettled_stretch() const;
-  [[nodiscard]] std::vector<Stretch> open_touch() const;
-  void add(std::vector<Stretch>& stretches, double from, double to, double deviation) const;
-  void refine(std::vector<Stretch> stretches, double end_deviation);
+  virtual void find_ends() = 0;
+  /// True when as many stars, or records, were read as the request allows.
+  [[nodiscard]] bool out_of_budget() const noexcept {
+    return request_.budget &&
+           context_.cost.stars_read + context_.cost.records_retrieved >= *request_.budget;
+  }
 
   const SightFacts& facts_;
   const SightRequest& request_;
   QueryContext& context_;
-  double step_;  ///< Deviations below this are not worth a search of their own.
-  BoundedMesh mesh_;
-  SightView view_;
 };
 
 }  // namespace ptin

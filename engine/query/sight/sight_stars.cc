@@ -21,11 +21,9 @@ constexpr double kShareSlack = 0x1p-40;
 SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
                        const SightRequest& request, const CoarseGround* coarse,
                        const SightLine& line, QueryContext& context)
-    : terrain_(terrain),
-      facts_(facts),
-      request_(request),
+    : SightSearch(facts, request, context),
+      terrain_(terrain),
       coarse_(coarse),
-      context_(context),
       line_(line),
       origin_(grid_of(line.p())),
       full_detail_(terrain.store()),
@@ -37,8 +35,8 @@ SightStars::SightStars(const OpenedTerrain& terrain, const SightFacts& facts,
   state_domain(line_.b, line_.q());
 }
 
-/// Before the ground below an end is known: T0 covers the domain, and is ground where the terrain
-/// has no void.
+/// States where an end lies, before the ground below it is known: T0 covers the domain, and is
+/// ground where the terrain has no void.
 void SightStars::state_domain(SightEnd& end, Spot spot) const {
   visit_living(terrain_.store().t0(), kInfinity, [&](const LivingTriangle& t) {
     if (holds(t, spot)) {
@@ -48,18 +46,7 @@ void SightStars::state_domain(SightEnd& end, Spot spot) const {
   });
 }
 
-bool SightStars::ends_known() const noexcept {
-  return (line_.a.known && line_.b.known) || (request_.absolute && !facts_.has_voids);
-}
-
-bool SightStars::out_of_budget() const noexcept {
-  return request_.budget && context_.cost.stars_read >= *request_.budget;
-}
-
-void SightStars::finish_ends() {
-  if (ends_known() || out_of_budget()) {
-    return;
-  }
+void SightStars::find_ends() {
   const std::array<Spot, 2> spots{line_.p(), line_.q()};
   const std::array<SightEnd*, 2> ends{&line_.a, &line_.b};
   std::array<TriangleAt, 2> at;
@@ -67,6 +54,7 @@ void SightStars::finish_ends() {
     SightEnd& end = *ends[i];
     end.known = true;
     if (end.inside) {
+      // Ends stand on the full TIN at any level of detail: a coarse one would lift or sink them.
       find_triangles(terrain_, full_detail_, {&spots[i], 1}, {&at[i], 1}, 0, context_);
     }
     end.surface = at[i].is_found && !at[i].triangle.is_void;
@@ -77,7 +65,8 @@ void SightStars::finish_ends() {
   }
   line_.take_levels();
   for (std::size_t i = 0; i < 2 && facts_.is_level_asked && line_.ends_defined(); ++i) {
-    if (at[i].is_found) {  // the full TIN there is at hand
+    // The triangle of the full TIN below an end is at hand, and is exact where the level is not.
+    if (at[i].is_found) {
       begin_search(Aim::kWhole, {0.0, 1.0}, full_);
       take(at[i].triangle);
     }
@@ -88,6 +77,7 @@ void SightStars::finish_ends() {
 std::optional<SightStars::Part> SightStars::part_in(const GridBox& box) const noexcept {
   Part part = part_;
   const auto cut = [&](double begin, double way, double low, double high) {
+    // A line in parallel to an axis is within the limits all along, or nowhere.
     if (way == 0) {
       return low <= begin && begin <= high;
     }
@@ -111,6 +101,7 @@ GridBox SightStars::box_of(const Part& part) const noexcept {
   const double y0 = origin_.y + part.from * way_.y;
   const double y1 = origin_.y + part.to * way_.y;
   const auto whole = [](double v) {
+    // A line may end beyond 32 bits, but no star lies there: nothing is lost by the limits.
     return static_cast<std::int32_t>(std::clamp(v, -0x1p31, 0x1p31 - 1));
   };
   return {whole(std::floor(std::min(x0, x1))), whole(std::floor(std::min(y0, y1))),
@@ -129,12 +120,16 @@ Merit SightStars::bound(const StarAttributes& a) const {
       facts_.heights.height_of_code(a.heights.hi) + facts_.finest_deviation + line_.rounding();
   const Ray& ray = line_.ray();
   const double above = top - ray.lowest(part->from, part->to);
+  // All that doubles and the level may hide of a height is in `top`, so the bound errs upward.
   if (aim_ != Aim::kFirst) {
     return {above};
   }
   if (above < 0) {
     return {-kInfinity};
   }
+  // With s = from + t width the ray bends by bend width^2. The bound is the negative of the share
+  // at which the ray may first fall to `top`, earlier by the slack, since shares are rounded: so
+  // falling merit is the order along the way.
   const double width = part->to - part->from;
   const double t =
       first_zero(ray.low(part->from) - top, ray.low(part->to) - top, ray.bend * width * width);
@@ -145,10 +140,13 @@ Merit SightStars::bound(const StarAttributes& a) const {
 double SightStars::cut_off() const noexcept {
   switch (aim_) {
     case Aim::kVerdict:
+      // Stars below 0 end below the line. One hidden piece is the verdict, and ends the search.
       return first_hidden_ <= 1.0 ? kInfinity : 0.0;
     case Aim::kLeast:
+      // A star that ends farther than most_ below the line holds no smaller clearance.
       return -most_;
     case Aim::kFirst:
+      // Merit is a negative share: what lies behind the first hidden piece is below.
       return -first_hidden_;
     case Aim::kWhole:
     case Aim::kTouch:
@@ -168,6 +166,8 @@ void SightStars::look_at(const Part& part) {
   lowest_ = line_.ray().lowest(part.from, part.to) - facts_.finest_deviation - line_.rounding() -
             (aim_ == Aim::kLeast ? most_ : 0.0);
   const double code = (lowest_ - facts_.heights.offset) / facts_.heights.step;
+  // rounding() counts the offset in, so the difference is covered; the quotient rounds by 2^-53,
+  // for which 1e-9 is ample. The filter may let through too much, and must never keep a star out.
   if (std::isfinite(code)) {
     filter_.heights.lo = code - 1e-9 * (1 + std::abs(code));
   }
@@ -184,6 +184,7 @@ Merit SightStars::visit(PageId page, const StarAttributes& a) {
   stars_->read(page, filter_, context_);
   stars_->visit_page([&](const GridBox& box) { return meets(box, filter_.box); },
                      [&](const LivingTriangle& t) { take(t); });
+  // Twice, since prefer_exact() copies the pieces into another array.
   context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) + stars_->bytes_aside() +
                  (coarse_ == nullptr ? 0 : coarse_->bytes()));
   return {cut_off()};
@@ -212,9 +213,9 @@ void SightStars::search(Aim aim, Part part, LevelStars& stars) {
   finish_search();
 }
 
-/// Takes what was set aside. What tells that such a triangle is gone bounds at least as much as the
-/// triangle: so it was read where the triangle's own bound is not below the cut-off, and no other
-/// triangle matters.
+/// Takes what was set aside. The star that shows such a triangle to be gone has bounds at least as
+/// large as the triangle's own. So it was read wherever the triangle's bound is not below the
+/// cut-off, and no other triangle matters.
 void SightStars::finish_search() {
   look_at(part_);
   if (is_cut_) {
@@ -235,7 +236,7 @@ void SightStars::finish_search() {
   });
 }
 
-/// Of a triangle that may be gone its own bounds hold all the same.
+/// Takes a triangle that may be gone: its bounds hold all the same.
 void SightStars::take_abandoned(const LivingTriangle& t) {
   if (const auto on = shared_stretch(t, facts_.heights, line_.p(), line_.q());
       on && !on->is_point) {
@@ -256,7 +257,8 @@ void SightStars::search_whole_line(Aim aim) {
   unread.highest = facts_.max_height;
   line_.certify(unread);
   line_.decide_by_bounds(unread);
-  if (aim == Aim::kLeast) {  // pages were read in the order of their bounds
+  // Pages come by falling bound, so none that is left exceeds the bound of the page at the cut.
+  if (aim == Aim::kLeast) {
     unread.least = std::max(unread.least, -cut_bound_);
   } else if (aim == Aim::kFirst) {
     unread.least = std::max(unread.least, most_);
@@ -279,7 +281,8 @@ SightPiece SightStars::piece_of(const LivingTriangle& t, const SharedStretch& on
   if (piece.surface) {
     piece.ground_from = line_.ground_of(on.from.ground);
     piece.ground_to = line_.ground_of(on.to.ground);
-    // The ground at an end is one number, also where the end lies on an edge.
+    // The ground at an end is one number: on an edge weights depend on the triangle, so the ground
+    // that was found for the end stands for all pieces that meet there.
     if (piece.exact && on.from.numerator == 0 && line_.a.known) {
       piece.ground_from = line_.ground_of(line_.a.ground);
     }
@@ -305,7 +308,8 @@ void SightStars::take(const LivingTriangle& t) {
   if (!meets(ptin::box_of(t), filter_.box)) {
     return;
   }
-  if (!wants_all()) {  // what is void is void in the full TIN, and hides nothing
+  // A void is void in the full TIN too, and hides nothing: where that is not so all is wanted.
+  if (!wants_all()) {
     const auto is_low = [&](const LivingTriangle::Corner& c) {
       return facts_.heights.height(c.height) < lowest_;
     };
@@ -336,9 +340,10 @@ void SightStars::take(const LivingTriangle& t) {
   line_.pieces.push_back(piece);
 }
 
-/// With ends that are as certain as the coarse level is, unless they are known already. True when
-/// the full surface hides the line for certain.
+/// True when the full surface hides the line for certain, by the coarse level alone. The ends are
+/// then as certain as that level, unless they are known already.
 bool SightStars::is_hidden_by_coarse() {
+  // Coarse surface may be a void in the full TIN, so beside voids it hides nothing for certain.
   if (coarse_ == nullptr || facts_.has_voids) {
     return false;
   }
@@ -353,6 +358,7 @@ bool SightStars::is_hidden_by_coarse() {
   line_.take_levels();
   part_ = {0.0, 1.0};
   const Ray& ray = line_.ray();
+  // What rises above the line at its highest rises above it wherever the ends truly are.
   const Ray upper{{ray.a.hi, ray.a.hi}, {ray.b.hi, ray.b.hi}, ray.bend};
   bool is_hidden = false;
   coarse_->search(
@@ -385,6 +391,7 @@ std::optional<double> SightStars::likely_share() const {
   coarse_->search(
       [&](const GridBox& box, const CoarseGround::Top& top) {
         const std::optional<Part> part = part_in(box);
+        // `least` is negative once a triangle rises above the line: then only higher ones come.
         return part ? top.surface - ray.lowest(part->from, part->to) + least : 0.0;
       },
       [&](const LivingTriangle& t) {
@@ -405,6 +412,8 @@ void SightStars::decide_by_search() {
     search_whole_line(Aim::kWhole);
     return;
   }
+  // What costs least comes first: the coarse level reads no page, the ends read those of two
+  // points, and the page at the likely share may hold what hides the line.
   if (is_hidden_by_coarse()) {
     return;
   }
@@ -427,6 +436,8 @@ void SightStars::finish_line() {
     search_whole_line(Aim::kWhole);
     return;
   }
+  // The clearance at an end is its height above the ground: a bound of the smallest one, before any
+  // page is read.
   for (const SightEnd* end : {&line_.a, &line_.b}) {
     if (end->known && end->surface) {
       most_ = std::min(most_, end->level.hi - line_.ground_of(end->ground) +

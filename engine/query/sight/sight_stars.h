@@ -11,14 +11,14 @@
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/living/triangle_on_line.h"
 #include "engine/query/sight/coarse_ground.h"
-#include "engine/query/sight/sight_line.h"
+#include "engine/query/sight/sight_search.h"
 #include "storage/packed_rtree.h"
 
 namespace ptin {
 
 /// Looks up the triangles that live at the level and may decide the line, those that most likely do
 /// so first. Pages whose stars end below the line are never read. Threads: one owner.
-class SightStars final : private BestStarVisitor {
+class SightStars final : public SightSearch, private BestStarVisitor {
  public:
   /// All borrowed for the life of the search.
   /// @param coarse  A coarse level of the terrain; null: none.
@@ -26,17 +26,11 @@ class SightStars final : private BestStarVisitor {
   SightStars(const OpenedTerrain& terrain, const SightFacts& facts, const SightRequest& request,
              const CoarseGround* coarse, const SightLine& line, QueryContext& context);
 
-  /// finish_ends() makes the ground below the ends exact. finish_line() finds what is asked of the
-  /// line beside the verdict: the pieces that may have the smallest clearance and the first
-  /// obstruction, or, for what runs along the line, all. Both stop when the budget is spent.
-  void finish_ends();
-  void finish_line();
-  /// REQUIRES: finish_line() came before, unless the verdict alone is asked for.
-  [[nodiscard]] SightVerdict decide();
-
-  [[nodiscard]] const SightLine& line() const noexcept { return line_; }
-  /// True when all that is asked of the ends is known.
-  [[nodiscard]] bool ends_known() const noexcept;
+  [[nodiscard]] const SightLine& line() const noexcept override { return line_; }
+  /// Finds the pieces that may have the smallest clearance and the first obstruction, or, for what
+  /// runs along the line, all.
+  void finish_line() override;
+  [[nodiscard]] SightVerdict decide() override;
 
  private:
   /// What a search is for.
@@ -56,8 +50,8 @@ class SightStars final : private BestStarVisitor {
   [[nodiscard]] Merit bound(const StarAttributes& a) const override;
   Merit visit(PageId page, const StarAttributes& a) override;
 
+  void find_ends() override;
   void state_domain(SightEnd& end, Spot spot) const;
-  [[nodiscard]] bool out_of_budget() const noexcept;
   [[nodiscard]] std::optional<Part> part_in(const GridBox& box) const noexcept;
   [[nodiscard]] GridBox box_of(const Part& part) const noexcept;
   [[nodiscard]] double cut_off() const noexcept;
@@ -87,23 +81,20 @@ class SightStars final : private BestStarVisitor {
   void decide_by_search();
 
   const OpenedTerrain& terrain_;
-  const SightFacts& facts_;
-  const SightRequest& request_;
   const CoarseGround* coarse_;
-  QueryContext& context_;
   SightLine line_;
   MapPoint origin_, way_;  ///< The line's beginning, and from there to its end, grid units.
   Detail full_detail_;
-  LevelStars asked_, full_;  ///< Of the level of detail, and of the full TIN.
-  // Of the search at hand.
+  LevelStars asked_, full_;  ///< Stars of the level of detail, and of the full TIN.
+  // The search at hand.
   LevelStars* stars_ = &asked_;
   Aim aim_ = Aim::kVerdict;
-  Part part_{0.0, 1.0};  ///< Of the way; nothing else is looked at.
-  StarFilter filter_;    ///< Of the page at hand.
+  Part part_{0.0, 1.0};  ///< Part of the way; nothing else is looked at.
+  LivingFilter filter_;  ///< What is wanted of the page at hand.
   double lowest_ = 0.0;  ///< What ends below this height on the page does not matter.
   bool is_cut_ = false;  ///< The budget ended the search.
   double cut_bound_ = 0.0;
-  // Of all searches.
+  // What all searches have found.
   double most_ = kInfinity;           ///< The smallest clearance is no more.
   double first_hidden_ = 2.0;         ///< Share of the way at which a hidden piece begins; 2: none.
   std::optional<double> open_touch_;  ///< Where the line has one point, which may be a void or not.

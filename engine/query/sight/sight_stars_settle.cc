@@ -20,6 +20,7 @@ void SightStars::settle() {
   }
   std::vector<std::pair<double, double>> likely;
   for (const SightPiece& p : line_.pieces) {
+    // Ground that rises above the line by more than the deviation hides it, unless it is a void.
     if (p.verdict == PieceVerdict::kUndecided && p.surface && p.guess < -p.deviation) {
       likely.emplace_back(p.guess, p.guess_at);
     }
@@ -48,6 +49,7 @@ void SightStars::look_at_full(Aim aim, double share) {
     settled_.push_back(share);
     return;
   }
+  // Only what this search has read is in doubt.
   const auto read = line_.pieces.begin() + static_cast<std::ptrdiff_t>(before);
   line_.pieces.erase(std::remove_if(read, line_.pieces.end(),
                                     [](const SightPiece& p) { return p.along_edge && !p.surface; }),
@@ -58,6 +60,8 @@ void SightStars::look_at_full(Aim aim, double share) {
 /// lie beside the line: looks for these.
 void SightStars::settle_touches() {
   for (auto share = unsettled_touch(); share; share = unsettled_touch()) {
+    // A look that the budget cuts settles nothing; then the budget is spent, and the next turn says
+    // so. So each turn but one settles a share, and the loop ends.
     if (out_of_budget()) {
       line_.take_open_touch(*share);
       settled_.push_back(*share);
@@ -100,18 +104,21 @@ void SightStars::narrow() {
     if (piece == nullptr) {
       return;
     }
+    // The point that is likely to be lowest may lower the upper bound of the clearance, the one
+    // with most room below it may raise the lower bound: taken by turns, both come closer.
     look_at_full(Aim::kWhole, piece->guess_at);
     order();
   }
 }
 
 /// The piece of the level by which the answer is most open; null when it is not.
-/// @param by_guess  Of the smallest clearance as it is, else of the smallest bound.
+/// @param by_guess  True: the smallest clearance as it is decides, else the smallest bound.
 const SightPiece* SightStars::wide_piece(bool by_guess) const {
   double most = kInfinity;
   for (const SightPiece& p : line_.pieces) {
     most = std::min(most, p.most);
   }
+  // One hidden piece is the verdict, whatever else is open.
   if (request_.verdict_only && line_.hidden_piece() != nullptr) {
     return nullptr;
   }
@@ -137,6 +144,7 @@ SightVerdict SightStars::decide() {
     narrow();
   }
   settle_touches();
+  // One certain obstruction outweighs all that is undecided.
   if (line_.hidden_piece() != nullptr || line_.is_touched_from_below()) {
     return SightVerdict::kHidden;
   }

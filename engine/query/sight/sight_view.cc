@@ -121,7 +121,7 @@ void SightView::set_end(const BoundedSurface& mesh, const Crossing& c, TriangleI
            std::max(deviation, facts().file_deviation));
 }
 
-/// Walks once more, and decides in rationals what doubles could not tell.
+/// Walks once more, and decides in rationals what doubles could not.
 void SightView::decide_exactly_all(const BoundedSurface& mesh) {
   const Tin& tin = mesh.tin();
   const bool is_open = std::any_of(pieces.begin(), pieces.end(), [](const SightPiece& p) {

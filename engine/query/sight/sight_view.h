@@ -21,11 +21,12 @@ struct KnownStretch {
   bool beyond = false;      ///< Records within the tolerance of the level of detail are there too.
 };
 
-/// A line over a mesh, as far as the mesh tells. The owner says in `known` which records the mesh
-/// holds along the line, refines the mesh, and looks again. Threads: one owner.
+/// A line over a mesh, as far as the mesh shows it. The owner says in `known` which records the
+/// mesh holds along the line, refines the mesh, and looks again. Threads: one owner.
 class SightView : public SightLine {
  public:
   using SightLine::SightLine;
+  explicit SightView(const SightLine& line) : SightLine(line) {}
 
   std::vector<KnownStretch> known;
   /// Records at the ends of a larger deviation are applied. Negative: all are. Infinite: none is
@@ -33,12 +34,12 @@ class SightView : public SightLine {
   double end_deviation = kInfinity;
 
   /// Walks the mesh from p to q, fills pieces and ends, and decides each piece: by bounds, and
-  /// where these do not tell and no record was left out, exactly. Cost: the triangles on the way.
+  /// where these do not decide and no record was left out, exactly. Cost: the triangles on the way.
   void look(const BoundedSurface& mesh);
 
   /// A point, as a share of the way, of which records may still change whether it is ground, and
-  /// which is not a part of a piece that tells: the one in which the line meets the domain, or one
-  /// in which two voids meet.
+  /// which is not a part of a piece that decides: the one in which the line meets the domain, or
+  /// one in which two voids meet.
   [[nodiscard]] const std::optional<double>& open_touch() const noexcept { return open_touch_; }
   /// True when no record was left out that may change the classes at a point.
   [[nodiscard]] bool is_settled_at(double share) const noexcept;

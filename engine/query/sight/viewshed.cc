@@ -13,8 +13,8 @@
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/shape/spot.h"
 #include "engine/query/sight/viewshed_sweep.h"
-#include "engine/query/walk/spot.h"
 
 namespace ptin {
 
@@ -126,7 +126,7 @@ std::uint64_t held_bytes(const Tin& tin) noexcept {
          tin.classes.capacity() * sizeof(TriangleClass);
 }
 
-/// Refines the mesh of a request, sweeps it, and tells which answers are certain.
+/// Refines the mesh of a request, sweeps it, and finds which answers are certain.
 class ViewshedSearch {
  public:
   ViewshedSearch(const OpenedTerrain& terrain, const ViewshedRequest& request)

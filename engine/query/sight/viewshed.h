@@ -19,7 +19,7 @@ namespace ptin {
 /// What a viewshed is asked with. Lengths on the ground are in the height's unit; the ground
 /// factors turn map units into it.
 struct ViewshedRequest {
-  MapPoint eye;           ///< Map units; taken to the nearest spot (walk/spot.h).
+  MapPoint eye;           ///< Map units; taken to the nearest spot (shape/spot.h).
   double eye_height = 0;  ///< Above the surface; absolute when `absolute` is set.
   bool absolute = false;
   double target_height = 0;     ///< Height of targets above the surface; >= 0.
@@ -99,7 +99,7 @@ struct Viewshed {
 /// memory, that of the raster included, is known before the sweep begins.
 ///
 /// At a level of detail the full TIN lies within d = certified_deviation * distance / radius of the
-/// TIN that is swept. Two more sweeps tell what is certain:
+/// TIN that is swept. Two more sweeps find what is certain:
 /// - A target is certainly hidden when it is hidden even with all before it lowered by d and the
 ///   target raised by d.
 /// - A target is certainly visible when it is visible even with all before it raised by d and the

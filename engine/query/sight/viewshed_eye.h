@@ -4,8 +4,8 @@
 #pragma once
 
 #include "engine/mesh/tin.h"
+#include "engine/query/shape/spot.h"
 #include "engine/query/sight/viewshed.h"
-#include "engine/query/walk/spot.h"
 #include "storage/store_file.h"
 
 namespace ptin {

@@ -61,6 +61,8 @@ class Viewer {
   void collect();
   [[nodiscard]] bool sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon);
   [[nodiscard]] std::size_t buckets() const noexcept {
+    // The shortest edges are about a grid unit long, so four times the radius in grid units is what
+    // Horizon advises. kMostBuckets keeps the horizon near 12 MiB, whatever the radius.
     const double across = std::max(request_.radius / ground_x_, request_.radius / ground_y_);
     return static_cast<std::size_t>(std::clamp(4 * across, 64.0, kMostBuckets));
   }
@@ -75,6 +77,7 @@ class Viewer {
   [[nodiscard]] double unknown_at(double x, double y) const noexcept {
     const double gx = x * ground_x_;
     const double gy = y * ground_y_;
+    // Products, sum and root each round by 2^-53 of their value; 1e-12 is some thousand times that.
     return bias_.slope * std::sqrt(gx * gx + gy * gy) * (1 + 1e-12) + bias_.base;
   }
   void look_at_pixels(TriangleId t, const Horizon& horizon);
@@ -152,6 +155,7 @@ void Viewer::place_pixels() {
   pixels_on_grid_ = !request_.pixel_size;
   const double reach_x = std::floor(request_.radius / (ground_x_ * pixel_x_));
   const double reach_y = std::floor(request_.radius / (ground_y_ * pixel_y_));
+  // Counts must fit 32 bits, also where the radius over the pixel size is infinite.
   constexpr double kMostPixels = 1e5;
   if (reach_x > kMostPixels || reach_y > kMostPixels) {
     refuse("the raster has more than 200 000 pixels a side: give a larger pixel size");
@@ -185,6 +189,8 @@ void Viewer::sweep() {
     ++left;
     const auto o = offsets(t);
     for (int i = 0; i < 3; ++i) {
+      // Doubles give turn(b, a) as exactly -turn(a, b), so the triangles on both hands of a side
+      // agree on which of them waits. A side in line with the eye hides neither from the other.
       const bool faces = turn(o[static_cast<std::size_t>(next_corner(i))],
                               o[static_cast<std::size_t>(previous_corner(i))]) < 0;
       if (faces && tin_.triangles[t].n[i] != kNone) {
@@ -227,8 +233,7 @@ void Viewer::sweep() {
 
 /// Raises the horizon to side a -> b of triangle `t`, beyond which lies `n`, moved by the bias.
 /// What is not known grows with the distance in a straight line, so between two sides it changes no
-/// slope by more than at these sides. Curvature does: by a quarter of the drop over a side within
-/// the triangle, and by as much again along the side.
+/// slope by more than at these sides. Curvature does.
 void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& horizon) const {
   const bool surface = is_surface(t) || is_surface(n);
   if (bias_.sign == 0) {
@@ -242,10 +247,13 @@ void Viewer::raise(TriangleId t, TriangleId n, Offset a, Offset b, Horizon& hori
     return;
   }
   const double longest = std::max(longest_side(t), n == kNone ? 0.0 : longest_side(n));
+  // A parabola c s^2 leaves a chord of length L by at most c L^2 / 4, a quarter of the drop: once
+  // within the triangle, and as much again along the side.
   const double bent = request_.curvature.drop_at(longest) / 2;
   for (Offset* p : {&a, &b}) {
     p->z += bias_.sign * (unknown_at(p->x, p->y) + bent);
     if (voids && !(is_surface(t) && (n == kNone || is_surface(n)))) {
+      // No drop is taken off: curvature only lowers, so without it the bound is higher and holds.
       p->z = std::max(p->z, facts_.max_height - result_.eye_height);
     }
   }
@@ -263,8 +271,8 @@ double Viewer::longest_side(TriangleId t) const noexcept {
   return std::sqrt(square);
 }
 
-/// Looks at the triangles that hide one another in a ring, and at all behind them, by walks. There
-/// are some only where the mesh is far from Delaunay.
+/// Looks at the triangles that hide one another in a circle, and at all behind them, by walks.
+/// There are some only where the mesh is far from Delaunay.
 void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon) {
   walked_.emplace(tin_, offsets_, eye_.spot);
   for (TriangleId t = 0; t < tin_.triangles.size(); ++t) {
@@ -304,6 +312,7 @@ Approach Viewer::approach_corner(const std::array<Offset, 3>& o, int corner) con
   if (leaving < 0 || coming < 0) {
     return {};
   }
+  // Only edges on the triangle's side of the ray are sure to be raised by now (see()).
   if (leaving == 0) {
     return {true, turn(at, previous) > 0 ? Horizon::Side::kLeft : Horizon::Side::kRight};
   }
@@ -324,6 +333,7 @@ void Viewer::look_at(TriangleId t, Horizon& horizon) {
     if (!within(p.x, p.y)) {
       continue;
     }
+    // The vertex below the eye has no direction; find_eye() refuses an eye below the surface.
     if (p.x == 0 && p.y == 0) {
       seen_[v] = Sight::kVisible;
       continue;
@@ -369,6 +379,7 @@ void Viewer::look_at_pixels_behind(TriangleId t, const Horizon& horizon) {
     if (is_surface(tin_.triangles[t].n[i]) && !(turn(a, b) < 0)) {
       look_at_box(t, horizon, {a, b});
     }
+    // A grid point at a corner is a vertex, which look_at() has looked at.
     if (!pixels_on_grid_ && approach_corner(o, i).from_within) {
       look_at_box(t, horizon, {o[static_cast<std::size_t>(i)]});
     }
@@ -384,6 +395,7 @@ void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
     low = std::min(low, p.y), high = std::max(high, p.y);
   }
   const auto clamp = [](double value, std::uint32_t size) {
+    // Small pixels make offsets larger than any integer; -1 and the size stand for all outside.
     return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
   };
   const std::int64_t from_column = clamp(std::ceil((left - first_x_) / pixel_x_), result_.width);
@@ -457,6 +469,7 @@ void Viewer::collect() {
     const bool visible = seen_[v] == Sight::kVisible;
     ++(visible ? result_.visible_vertices : result_.hidden_vertices);
     if (request_.pixels && pixels_on_grid_) {
+      // The pixel on a vertex takes the vertex's answer: the smallest triangles look at no pixel.
       const auto column = static_cast<std::int64_t>(std::llround(o.x - first_x_));
       const auto row = static_cast<std::int64_t>(std::llround(first_y_ - o.y));
       if (column >= 0 && row >= 0 && column < result_.width && row < result_.height) {

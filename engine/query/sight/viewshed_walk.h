@@ -15,7 +15,7 @@ namespace ptin {
 /// Whether a point of the void triangle `t` is on the rim of the void: some surface triangle holds
 /// it too. A sight line across the void comes to such a target through a void triangle, so the void
 /// triangle looks at it.
-/// @param weights  Of the corners of `t` at the point; >= 0.
+/// @param weights  Weights of the corners of `t` at the point; >= 0.
 /// Cost: a corner's degree at a corner, else O(1).
 [[nodiscard]] inline bool holds_surface(const Tin& tin, TriangleId t, const double (&weights)[3]) {
   const Triangle& triangle = tin.triangles[t];
@@ -33,11 +33,11 @@ namespace ptin {
   return false;
 }
 
-/// Tells what an eye sees by walking to each target. Borrows all for its life. Threads: several may
+/// Finds what an eye sees by walking to each target. Borrows all for its life. Threads: several may
 /// ask.
 class WalkedView {
  public:
-  /// @param offsets  Of each vertex from the eye; z is not read for vertices without a height.
+  /// @param offsets  Vertices from the eye; z is not read for vertices without a height.
   WalkedView(const Tin& tin, const std::vector<Offset>& offsets, Spot eye)
       : tin_(tin), offsets_(offsets), eye_(eye) {}
 

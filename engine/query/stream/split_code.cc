@@ -32,6 +32,8 @@ bool is_void(const Tin& tin, TriangleId t) { return tin.classes[t] == TriangleCl
 /// A height as a whole number that keeps the order of heights: an int32 as it is, a float32 by its
 /// bits.
 std::int64_t SplitCode::number_of(HeightBits bits) const noexcept {
+  // The magnitude of a float grows with its lower 31 bits; below 0 they are turned, so that order
+  // is kept. -0 becomes -1 and not 0, so that each height comes back bit by bit.
   const auto n = std::bit_cast<std::int32_t>(bits);
   return type_ == HeightType::int32 || n >= 0 ? n : n ^ INT32_MAX;
 }
@@ -43,12 +45,14 @@ HeightBits SplitCode::bits_of(std::int64_t number) const noexcept {
 
 void SplitCode::begin_block(const Tin& tin) {
   last_w_ = 0;
+  // Vertices keep their ids, and new ones come behind: those on the curve need not be sorted again.
   const auto before = static_cast<std::ptrdiff_t>(curve_.size());
   for (auto v = static_cast<VertexId>(before); v < tin.vertices.size(); ++v) {
     const GridPoint p = tin.position(v);
     curve_.push_back(
         {hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), v});
   }
+  // No two vertices share a place, so the order needs no tie rule on which both sides would agree.
   std::sort(curve_.begin() + before, curve_.end());
   std::inplace_merge(curve_.begin(), curve_.begin() + before, curve_.end());
   rank_.resize(curve_.size());
@@ -108,6 +112,8 @@ template <class Coder>
 const char* SplitCode::code_w(Coder& coder, const Tin& tin, LocalSplit& s) {
   s.begins_level = coder.code(level_, s.begins_level);
   last_w_ = s.begins_level ? 0 : last_w_;
+  // Within a level ranks of w rise, so gaps are small. A decoded gap is below 2^40, and the sum
+  // does not wrap, whatever a damaged code says.
   const std::uint64_t w = last_w_ + gap_.code(coder, rank_of(s.w) - last_w_);
   if (w >= tin.vertices.size()) {
     return "names a w that is not there";
@@ -126,6 +132,7 @@ const char* SplitCode::code_fan(Coder& coder, const Tin& tin, LocalSplit& s) {
   side_ = (s.flags & VertexSplit::kNoLeft) != 0
               ? Side::kNoLeft
               : ((s.flags & VertexSplit::kNoRight) != 0 ? Side::kNoRight : Side::kInner);
+  // A decoder does not know the flags yet: what follows decides its side_ from the code.
   if constexpr (kEncodes<Coder>) {
     fan_first_ = place(s.vl);
     const std::size_t last = place(s.vr);
@@ -146,10 +153,13 @@ const char* SplitCode::code_fan(Coder& coder, const Tin& tin, LocalSplit& s) {
     side_ = Side::kInner;
   }
   if (side_ != Side::kInner) {
+    // The fan begins or ends at the border edge that u divides, so its size says where it is.
     fan_size_ =
         1 + border_size_.code(coder, corners - 2, static_cast<std::uint32_t>(fan_size_) - 1);
     fan_first_ = side_ == Side::kNoLeft ? 0 : corners - 1 - fan_size_;
   } else {
+    // Only places behind which a triangle follows are offered, and only sizes that the link has: no
+    // bits are lost on others, and a decoder cannot leave the star.
     const std::uint32_t most_first = star_.closed ? corners - 1 : corners - 2;
     fan_first_ = first_.code(coder, most_first, static_cast<std::uint32_t>(fan_first_));
     const std::size_t most = star_.closed ? corners - 1 : corners - 1 - fan_first_;
@@ -174,6 +184,8 @@ bool SplitCode::column(std::int64_t x, std::int64_t& low, std::int64_t& high) co
     const GridPoint p = outline_[i];
     const GridPoint q = outline_[i + 1 == outline_.size() ? 0 : i + 1];
     const std::int64_t dx = std::int64_t{q.x} - p.x;
+    // Strictly left of p -> q is dx (y - p.y) > t. A division by dx < 0 turns the sign round. For
+    // whole y it is floor + 1 upward and ceil - 1 downward; for dx = 0 there is no y in it.
     const std::int64_t t = (std::int64_t{q.y} - p.y) * (x - p.x);
     if (dx > 0) {
       low = std::max(low, p.y + floor_div(t, dx) + 1);
@@ -194,12 +206,14 @@ const char* SplitCode::code_inner_position(Coder& coder, const Tin& /*tin*/, Loc
     min_x = std::min(min_x, p.x);
     max_x = std::max(max_x, p.x);
   }
+  // u lies strictly within its star, so no place is in the outermost columns.
   if (max_x - min_x < 2) {
     return "has no place for its vertex";
   }
   if (kEncodes<Coder> && (s.u.x <= min_x || s.u.x >= max_x)) {
     return "has its vertex outside of its star";
   }
+  // A decoder does not know u: the offset means nothing then, and its coder does not look at it.
   const auto x_offset = static_cast<std::uint32_t>(s.u.x - min_x - 1);
   const auto most_x = static_cast<std::uint32_t>(max_x - min_x - 2);
   s.u.x = min_x + 1 + static_cast<std::int32_t>(x_.code(coder, most_x, x_offset));
@@ -230,6 +244,7 @@ const char* SplitCode::code_border_position(Coder& coder, const Tin& tin, LocalS
   }
   std::int32_t step = 1;
   if constexpr (kEncodes<Coder>) {
+    // The division may round for a u beside the edge; comparing places finds that out.
     step = dx != 0 ? (s.u.x - w.x) / (dx / steps) : (s.u.y - w.y) / (dy / steps);
     const GridPoint there{w.x + step * (dx / steps), w.y + step * (dy / steps)};
     if (step < 1 || step >= steps || there != s.u) {
@@ -251,6 +266,7 @@ std::size_t SplitCode::fan_triangle_of(const Tin& tin, GridPoint u) const noexce
       return k;
     }
   }
+  // Both sides must name the same triangle also where none holds u; any would do.
   return fan_size_ - 1;
 }
 
@@ -271,6 +287,8 @@ std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size
     area += weight;
   }
   if (all && area > 0) {
+    // floor(sum / area + 1/2) is rounding with halves up. Division cuts towards 0, so a negative
+    // remainder takes one off. Where u is not in triangle k the plane may leave the range.
     const Wide twice = 2 * sum + area;
     const Wide divisor = 2 * area;
     const auto quotient = static_cast<std::int64_t>(twice / divisor);
@@ -285,7 +303,7 @@ std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size
   return last_height_;
 }
 
-/// Length in bits of the range of the heights of w and the fan, which tells how far off a
+/// Length in bits of the range of the heights of w and the fan, which shows about how far off a
 /// prediction may be; 33 where none has a height.
 std::size_t SplitCode::roughness(const Tin& tin) const {
   std::int64_t low = INT64_MAX;
@@ -300,6 +318,7 @@ std::size_t SplitCode::roughness(const Tin& tin) const {
   for (std::size_t k = 0; k < fan_corners(); ++k) {
     see(corner(k));
   }
+  // A range of 32-bit numbers takes at most 32 bits, so 33 is free for "none".
   return low > high
              ? 33
              : static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(high - low)));
@@ -312,7 +331,7 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
   for (std::size_t i = 0; i < fan_size_; ++i) {
     all_void = all_void && is_void(tin, fan_triangle(i));
   }
-  // A vertex without a height stands in void triangles only.
+  // A vertex without a height stands in void triangles only, so elsewhere no bit is spent on it.
   bool has_none = (s.flags & VertexSplit::kVertexVoid) != 0;
   if (!all_void) {
     if (kEncodes<Coder> && has_none) {
@@ -333,15 +352,18 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
   }
   const std::int64_t expected = predicted(tin, s, k);
   const std::int64_t off = number_of(s.height) - expected;
+  // Small residuals of either sign become small numbers: 0, -1, 1, -2 are 0, 1, 2, 3.
   const auto folded =
       (static_cast<std::uint64_t>(off) << 1) ^ static_cast<std::uint64_t>(off >> 63);
   const std::uint64_t coded = residual_[roughness(tin)].code(coder, folded);
   const std::int64_t number =
       expected + (static_cast<std::int64_t>(coded >> 1) ^ -static_cast<std::int64_t>(coded & 1U));
+  // A residual needs 33 bits, and a damaged code can have 40.
   if (number < INT32_MIN || number > INT32_MAX) {
     return "has a height beyond all numbers";
   }
   s.height = bits_of(number);
+  // Magnitudes above that of infinity are NaN.
   if (type_ == HeightType::float32 && (s.height & 0x7FFFFFFFU) > 0x7F800000U) {
     return "has a height that is no number";
   }
@@ -373,6 +395,7 @@ void SplitCode::code_classes(Coder& coder, const Tin& tin, LocalSplit& s) {
     return tin.triangles[t].n[turn(corner_of(tin.triangles[t], s.w))];
   };
   constexpr std::uint16_t kClasses = VertexSplit::kLeftVoid | VertexSplit::kRightVoid;
+  // A triangle that does not exist has no class: its flag stays clear on both sides.
   const std::uint16_t given = s.flags;
   s.flags = static_cast<std::uint16_t>(s.flags & ~kClasses);
   if (side_ != Side::kNoLeft) {

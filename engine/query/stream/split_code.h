@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// One vertex split as a few bits: everything in it is told relative to the mesh that both sides
+// One vertex split as a few bits: everything in it is coded relative to the mesh that both sides
 // have. storage/FORMAT.md, "Streams", has it step by step.
 #pragma once
 
@@ -39,7 +39,8 @@ class SplitCode {
   }
   /// Decodes the split that comes next on `tin`. Any input is safe. What is decoded has its w, vl
   /// and vr in the mesh, in order around w, u on the grid, and heights and classes that fit;
-  /// split() tells whether it is a split. REQUIRES: every vertex of `tin` is alive, the mesh valid.
+  /// split() finds out whether it is a split. REQUIRES: every vertex of `tin` is alive, the mesh
+  /// valid.
   /// @return null; or why there is no split, as encode() says it.
   [[nodiscard]] const char* decode(RangeDecoder& coder, const Tin& tin, LocalSplit& split) {
     return code(coder, tin, split);
@@ -48,7 +49,7 @@ class SplitCode {
   /// Begins a block with the next split: numbers the vertices of `tin` along the Hilbert curve.
   /// Cost: linear in the mesh, and n log n in the vertices that are new.
   void begin_block(const Tin& tin);
-  /// The number by which a w is told in the current block: its place along the curve among the
+  /// The number that stands for a w in the current block: its place along the curve among the
   /// vertices that were there when the block began. A vertex that came within the block keeps its
   /// id, which is behind all of these.
   [[nodiscard]] std::uint32_t rank_of(VertexId v) const noexcept {
@@ -108,7 +109,7 @@ class SplitCode {
   std::vector<std::uint32_t> rank_;  ///< Where each stands in `curve_`.
   std::int64_t last_height_ = 0;
 
-  Star star_;                       ///< Of w.
+  Star star_;                       ///< The star of w.
   std::size_t start_ = 0;           ///< Index in star_.link at which the link begins.
   Side side_ = Side::kInner;        ///< Which of the new triangles does not exist.
   std::size_t fan_first_ = 0;       ///< Place of corner vl, counted from start_.

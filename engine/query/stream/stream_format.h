@@ -31,9 +31,9 @@ enum class FrameKind : std::uint32_t { kStart = 1, kT0 = 2, kSplits = 3, kEnd = 
 struct FrameHead {
   std::uint32_t kind;
   std::uint32_t sequence;  ///< 0 for the first frame of a stream.
-  std::uint32_t bytes;     ///< Of the payload.
+  std::uint32_t bytes;     ///< Bytes of the payload.
   std::uint32_t reserved;  ///< Zero.
-  std::uint64_t checksum;  ///< Of bytes 0 to 15 and the payload.
+  std::uint64_t checksum;  ///< Checksum of bytes 0 to 15 and the payload.
 };
 static_assert(sizeof(FrameHead) == 24);
 inline constexpr std::uint32_t kMaxFrameBytes = 1U << 28;

@@ -69,7 +69,7 @@ class StreamReader {
   /// What the mesh is certified for in the region that the stream was asked for; at least
   /// base_error.
   [[nodiscard]] const Certificate& certificate() const noexcept { return certificate_; }
-  /// Facts of the file from which the stream came, as far as a stream tells them: map, heights,
+  /// Facts of the file from which the stream came, as far as a stream has them: map, heights,
   /// bounds, base.
   [[nodiscard]] const StoreFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const std::string& metadata() const noexcept { return metadata_; }
@@ -119,7 +119,7 @@ class StreamReader {
   std::uint64_t t0_vertices_ = 0;
   std::uint64_t numbering_ = 0;
   std::uint64_t splits_ = 0, splits_in_all_ = 0;
-  std::uint64_t digest_ = 0;  ///< Of the mesh.
+  std::uint64_t digest_ = 0;  ///< Digest of the mesh.
   Certificate certificate_;
   Tin tin_;
   std::optional<SplitCode> code_;

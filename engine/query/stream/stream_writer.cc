@@ -224,15 +224,15 @@ void sort_by_rank(std::span<PendingSplit> splits) {
 
 /// Records that the servings brought are known before anything is read.
 void Writer::admit_what_is_told() const {
-  std::uint64_t told = 0;
+  std::uint64_t held_records = 0;
   for (const StreamHeld& held : request_.held) {
     if (held.splits > store_.record_count()) return;
-    told += held.splits;
+    held_records += held.splits;
   }
-  told = std::min(told, store_.record_count());
+  held_records = std::min(held_records, store_.record_count());
   const std::uint64_t least =
-      std::min(request_.fewest_splits.value_or(1), store_.record_count() - told);
-  context_.admit(bytes_of_sending(terrain_.t0().vertices.size() + told, least));
+      std::min(request_.fewest_splits.value_or(1), store_.record_count() - held_records);
+  context_.admit(bytes_of_sending(terrain_.t0().vertices.size() + held_records, least));
 }
 
 /// The mesh that the receiver has, numbered as the receiver numbers it: T0, and the records of all

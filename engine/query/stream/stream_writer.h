@@ -23,9 +23,9 @@
 
 namespace ptin {
 
-/// One serving that a receiver has had. Of the records for which `predicate` is true and which no
-/// earlier serving in the list brought, it is the first `splits` in the total order. So servings
-/// are listed in the order in which they were received.
+/// One serving that a receiver has had. It is the first `splits`, in the total order, of the
+/// records for which `predicate` is true and which no earlier serving in the list brought. So
+/// servings are listed in the order in which they were received.
 struct StreamHeld {
   PredicatePtr predicate;  ///< Null: everything.
   /// Fewer than there are: the serving was cut there.
@@ -54,12 +54,12 @@ struct StreamRequest {
 };
 
 struct StreamSummary {
-  std::uint64_t base_vertices = 0;  ///< Of T0, or of the mesh that the receiver has.
+  std::uint64_t base_vertices = 0;  ///< Vertices of T0, or of the mesh that the receiver has.
   std::uint64_t splits = 0;         ///< Sent.
   std::uint64_t frames = 0;
   std::uint64_t bytes = 0;
   bool is_cut = false;            ///< At StreamRequest::most_bytes.
-  std::uint64_t split_bytes = 0;  ///< Of `bytes`, those of frames of splits, heads included.
+  std::uint64_t split_bytes = 0;  ///< Bytes of frames of splits, heads included.
   Certificate certificate;        ///< Once all is received, in the region asked for.
   QueryCost cost;
 };
@@ -75,7 +75,7 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// @throws Error invalid_argument, resource_exhausted (before anything is sent), corruption,
 /// io_error, cancelled; what `sink` throws
 /// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
-/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings tell
+/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings state
 /// their splits, from what the request says alone. With `most_splits`, and of servings that were cut, pages are read
 /// about as far down in errors as their splits are (first_records(), select/total_order.h).
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "engine/geometry/affine.h"
+#include "engine/query/shape/clip.h"
 
 namespace ptin {
 
@@ -27,8 +28,7 @@ class ConvexPiece {
     std::array<double, kMost> side{};
     bool is_whole = true;
     for (std::size_t i = 0; i < size_; ++i) {
-      const MapPoint p = corners_[i];
-      side[i] = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+      side[i] = cross(a, b, corners_[i]);
       is_whole = is_whole && side[i] >= 0;
     }
     if (!is_whole) cut(side);
@@ -42,10 +42,9 @@ class ConvexPiece {
 
   [[nodiscard]] std::span<const MapPoint> corners() const { return {corners_.data(), size_}; }
   [[nodiscard]] bool is_empty() const { return size_ < 3; }
-  /// Of the triangle of corners 0, i and i + 1, square grid units; not negative.
+  /// Area of the triangle of corners 0, i and i + 1, square grid units; not negative.
   [[nodiscard]] double fan_area(std::size_t i) const {
-    const MapPoint a = corners_[0], b = corners_[i], c = corners_[i + 1];
-    return std::fmax(0.0, ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2);
+    return std::fmax(0.0, cross(corners_[0], corners_[i], corners_[i + 1]) / 2);
   }
 
  private:
@@ -54,13 +53,12 @@ class ConvexPiece {
   void cut(const std::array<double, kMost>& side) {
     std::array<MapPoint, kMost> kept;
     std::size_t n = 0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      const std::size_t j = i + 1 == size_ ? 0 : i + 1;
-      if (side[i] >= 0 && n < kMost) kept[n++] = corners_[i];
-      if ((side[i] > 0 && side[j] < 0) || (side[i] < 0 && side[j] > 0)) {
-        if (n < kMost) kept[n++] = crossing(i, j, side[i], side[j]);
-      }
-    }
+    const auto put = [&](MapPoint p) {
+      if (n < kMost) kept[n++] = p;
+    };
+    clip_convex(
+        size_, [&](std::size_t i) { return side[i]; }, [&](std::size_t i) { put(corners_[i]); },
+        [&](std::size_t i, std::size_t j) { put(crossing(i, j, side[i], side[j])); });
     corners_ = kept;
     size_ = n < 3 ? 0 : n;
   }

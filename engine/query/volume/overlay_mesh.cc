@@ -13,7 +13,7 @@ namespace ptin {
 
 namespace {
 
-/// Of a triangle, while the array of them grows, or while they are put in order.
+/// Bytes of a triangle while the array of them grows, or while they are put in order.
 constexpr std::uint64_t kBytesATriangle = 2 * sizeof(LivingTriangle) + 72;
 
 /// Along the Hilbert curve by the middle of the box.

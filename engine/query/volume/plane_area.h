@@ -23,7 +23,7 @@ struct GroundScale {
 /// matter, only its area and where its corners lie along y.
 struct Facet {
   double area = 0.0;          ///< Square grid units.
-  std::array<double, 3> y{};  ///< Of the corners, grid units.
+  std::array<double, 3> y{};  ///< The corners' y, grid units.
   std::array<double, 3> f{};  ///< The function at the corners.
 };
 

@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/geometry/affine_rounding.h"
+#include "engine/query/shape/clip.h"
 #include "engine/query/volume/grid_box.h"
 
 namespace ptin {
@@ -20,10 +21,6 @@ constexpr int kMostHalvings = 40;
 constexpr int kMostInVain = 8;
 /// Edges and pairs of edges that are looked at for one piece.
 constexpr std::uint64_t kMostLooks = std::uint64_t{1} << 26;
-
-double cross(MapPoint o, MapPoint a, MapPoint b) {
-  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
 
 void look(std::uint64_t& looks, std::uint64_t more) {
   looks += more;
@@ -51,7 +48,10 @@ RegionCutter::RegionCutter(const Region& region, const AffineMap& map) : region_
                 "a volume is asked of a window or a polygon; a point has no inside");
   }
   cancel_pairs();
-  sort_into_bins();
+  std::vector<Interval> reaches;
+  reaches.reserve(edges_.size());
+  for (const Edge& e : edges_) reaches.push_back({e.low.y, e.high.y});
+  bins_ = BinsAlongY(reaches);
 }
 
 /// Two edges between the same ends bound nothing, by the even-odd rule.
@@ -86,58 +86,15 @@ void RegionCutter::add_ring(std::span<const MapPoint> ring, const AffineMap& map
   }
 }
 
-void RegionCutter::sort_into_bins() {
-  if (edges_.empty()) return;
-  double high = edges_.front().high.y;
-  low_ = edges_.front().low.y;
-  for (const Edge& e : edges_) {
-    low_ = std::min(low_, e.low.y);
-    high = std::max(high, e.high.y);
-  }
-  // So many that an edge is in six bins on average at most.
-  double heights = 0.0;
-  for (const Edge& e : edges_) heights += e.high.y - e.low.y;
-  const auto count = static_cast<double>(edges_.size());
-  const double most = heights > 0 ? 4.0 * count * ((high - low_) / heights) : 1.0;
-  const auto bins = static_cast<std::size_t>(std::clamp(std::min(most, count), 1.0, 0x1p16));
-  bins_per_unit_ = high > low_ ? static_cast<double>(bins) / (high - low_) : 0.0;
-  bin_begin_.assign(bins + 1, 0);
-  for (Edge& e : edges_) {
-    e.first_bin = bin_of(e.low.y);
-    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) ++bin_begin_[b + 1];
-  }
-  for (std::size_t b = 0; b < bins; ++b) bin_begin_[b + 1] += bin_begin_[b];
-  in_bin_.resize(bin_begin_.back());
-  std::vector<std::uint32_t> next(bin_begin_.begin(), bin_begin_.end() - 1);
-  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-    const Edge& e = edges_[i];
-    for (std::size_t b = e.first_bin; b <= bin_of(e.high.y); ++b) in_bin_[next[b]++] = i;
-  }
-}
-
-std::size_t RegionCutter::bin_of(double y) const {
-  const double bin = (y - low_) * bins_per_unit_;
-  const auto last = static_cast<double>(bin_begin_.size() - 2);
-  return static_cast<std::size_t>(std::clamp(bin, 0.0, last));
-}
-
-RegionCutter::Edges RegionCutter::edges_along(const Extent& extent) const {
+RegionCutter::Edges RegionCutter::edges_along(const GridWindow& extent) const {
   Edges along;
-  if (edges_.empty()) return along;
-  const std::size_t first = bin_of(extent.min_y), last = bin_of(extent.max_y);
-  for (std::size_t b = first; b <= last; ++b) {
-    for (std::uint32_t i = bin_begin_[b]; i < bin_begin_[b + 1]; ++i) {
-      const Edge& e = edges_[in_bin_[i]];
-      const bool is_seen = std::max(e.first_bin, first) != b;
-      if (!is_seen) along.push_back(&e);
-    }
-  }
+  bins_.visit(extent.min_y, extent.max_y, [&](std::uint32_t i) { along.push_back(&edges_[i]); });
   return along;
 }
 
-RegionCutter::Extent RegionCutter::extent_of(const ConvexPiece& piece) {
+GridWindow RegionCutter::extent_of(const ConvexPiece& piece) {
   const MapPoint p = piece.corners().front();
-  Extent extent{p.x, p.y, p.x, p.y};
+  GridWindow extent{p.x, p.y, p.x, p.y};
   for (const MapPoint q : piece.corners()) {
     extent = {std::min(extent.min_x, q.x), std::min(extent.min_y, q.y), std::max(extent.max_x, q.x),
               std::max(extent.max_y, q.y)};
@@ -147,7 +104,7 @@ RegionCutter::Extent RegionCutter::extent_of(const ConvexPiece& piece) {
 
 void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts) const {
   if (piece.is_empty()) return;
-  const Extent e = extent_of(piece);
+  const GridWindow e = extent_of(piece);
   const GridBox box = box_between({e.min_x, e.min_y}, {e.max_x, e.max_y});
   if (!region_.meets(box)) return;
   if (region_.contains(box)) {
@@ -163,7 +120,7 @@ void RegionCutter::cut(const ConvexPiece& piece, std::vector<ConvexPiece>& parts
 void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                              std::vector<ConvexPiece>& parts) {
   if (piece.is_empty()) return;
-  const Extent e = extent_of(piece);
+  const GridWindow e = extent_of(piece);
   look(*done.looks, along.size());
   Edges local, left;
   for (const Edge* edge : along) {
@@ -197,7 +154,7 @@ void RegionCutter::cut_along(const ConvexPiece& piece, const Edges& along, Halvi
 
 /// Where slabs of a piece begin and end, ascending: between them no edge begins, ends or crosses
 /// another.
-std::vector<double> RegionCutter::slab_ends(const Extent& extent, const Edges& local) {
+std::vector<double> RegionCutter::slab_ends(const GridWindow& extent, const Edges& local) {
   std::vector<double> ends = {extent.min_y, extent.max_y};
   const auto add = [&](double y) {
     if (y > extent.min_y && y < extent.max_y) ends.push_back(y);
@@ -225,7 +182,7 @@ void RegionCutter::cut_in_slab(const ConvexPiece& piece, double low, double high
   if (!(low < middle && middle < high)) return;
   const auto spans = [&](const Edge* e) { return e->low.y <= middle && middle < e->high.y; };
   bool inside = std::count_if(left.begin(), left.end(), spans) % 2 != 0;
-  const Extent extent = extent_of(piece);
+  const GridWindow extent = extent_of(piece);
   double side = extent.min_x;
   std::vector<std::pair<double, const Edge*>> across;
   for (const Edge* e : local) {

@@ -10,6 +10,7 @@
 
 #include "engine/geometry/affine.h"
 #include "engine/query/select/region.h"
+#include "engine/query/shape/bins_along_y.h"
 #include "engine/query/volume/convex_piece.h"
 
 namespace ptin {
@@ -37,16 +38,12 @@ class RegionCutter {
   /// An edge, its lower end first. A horizontal one begins a slab, and is a side of none.
   struct Edge {
     MapPoint low, high;
-    std::size_t first_bin = 0;
 
     [[nodiscard]] double x_at(double y) const {
       if (y <= low.y) return low.x;
       if (y >= high.y) return high.x;
       return low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x);
     }
-  };
-  struct Extent {
-    double min_x, min_y, max_x, max_y;
   };
   using Edges = std::vector<const Edge*>;
 
@@ -57,23 +54,19 @@ class RegionCutter {
     std::uint64_t* looks = nullptr;  ///< What has been looked at for the whole piece.
   };
 
-  static Extent extent_of(const ConvexPiece& piece);
+  static GridWindow extent_of(const ConvexPiece& piece);
   void add_ring(std::span<const MapPoint> ring, const AffineMap& map);
   void cancel_pairs();
-  void sort_into_bins();
-  [[nodiscard]] std::size_t bin_of(double y) const;
-  [[nodiscard]] Edges edges_along(const Extent& extent) const;
+  [[nodiscard]] Edges edges_along(const GridWindow& extent) const;
   static void cut_along(const ConvexPiece& piece, const Edges& along, Halvings done,
                         std::vector<ConvexPiece>& parts);
-  static std::vector<double> slab_ends(const Extent& extent, const Edges& local);
+  static std::vector<double> slab_ends(const GridWindow& extent, const Edges& local);
   static void cut_in_slab(const ConvexPiece& piece, double low, double high, const Edges& local,
                           const Edges& left, std::vector<ConvexPiece>& parts);
 
   GridRegion region_;
   std::vector<Edge> edges_;
-  /// Edges by bins along y: those of bin i are in_bin_[bin_begin_[i], bin_begin_[i + 1]).
-  std::vector<std::uint32_t> bin_begin_, in_bin_;
-  double low_ = 0, bins_per_unit_ = 0;
+  BinsAlongY bins_;  ///< Of the edges.
 };
 
 }  // namespace ptin

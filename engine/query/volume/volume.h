@@ -61,8 +61,8 @@ struct VolumeResult {
   double only_here_area = 0.0, only_other_area = 0.0;
   /// Net volume by surface area, height's unit; NaN where there is no surface.
   double mean_difference = std::numeric_limits<double>::quiet_NaN();
-  Certificate certificate, other_certificate;  ///< Of the TINs that were asked.
-  double border_move = 0.0;  ///< Of either terrain, ground units; +infinity: nothing bounds it.
+  Certificate certificate, other_certificate;  ///< Certificates of the TINs that were asked.
+  double border_move = 0.0;  ///< Largest of either terrain, ground units; +infinity: not bounded.
   bool exact = false;        ///< Both TINs are the full ones of their sources.
   std::uint64_t tiles = 0;   ///< Parts in which the terrains were processed.
   QueryCost cost;

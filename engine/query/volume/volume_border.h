@@ -44,7 +44,7 @@ struct BorderSide {
 
 /// Adds the edges between surface and void whose lower end (by key) lies in `tile`, and the parts of
 /// the border that begin there.
-/// @param sides  Of the triangles of the level, at least those with an end in the tile. Sorted.
+/// @param sides  Sides of the level's triangles, at least those with an end in the tile. Sorted.
 void add_border(std::vector<BorderSide>& sides, const GridBox& tile, const PlaneArea& plane,
                 const BorderScope& scope, BorderLength& border);
 

@@ -50,9 +50,9 @@ class VolumeSums {
   /// source's.
   void add_void(const PlaneArea& plane, const ConvexPiece& piece, const Interval& possible);
 
-  FixedSum cut, fill;  ///< Of the TIN that is asked.
+  FixedSum cut, fill;  ///< Sums of the TIN that is asked.
   FixedSum cut_area, fill_area, surface_area, void_area;
-  FixedSum least_cut, most_cut, least_fill, most_fill;  ///< Of the source, with classes as here.
+  FixedSum least_cut, most_cut, least_fill, most_fill;  ///< The source's, with classes as here.
   FixedSum slack;                ///< Deviation times area: how far the net can be off.
   FixedSum void_cut, void_fill;  ///< What the source can have at most where it is void here.
   FixedSum rounding;             ///< Most that rounding changed any of the volumes.

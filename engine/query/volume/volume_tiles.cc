@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "engine/geometry/infinity.h"
 #include "engine/query/living/stars_in_region.h"
-#include "engine/query/refine/tile_queue.h"
+#include "engine/query/shape/tiler.h"
 #include "engine/query/volume/grid_box.h"
 #include "engine/query/volume/overlay_mesh.h"
 #include "engine/stop.h"
@@ -20,8 +19,7 @@ namespace ptin {
 
 namespace {
 
-constexpr std::int64_t kSmallestTile = 8;  // grid units a side
-constexpr double kSlack = 16;              // of the bounds of sums, for what rounding adds
+constexpr double kSlack = 16;  // of the bounds of sums, for what rounding adds
 
 /// What all tiles need of one walk.
 struct Walk {
@@ -34,10 +32,16 @@ struct Walk {
 class TileWorker {
  public:
   virtual ~TileWorker() = default;
-  /// Counts a tile. False when that takes more than `most_bytes`: nothing of it is counted then.
-  virtual bool count(const GridBox& tile, std::uint64_t most_bytes) = 0;
-  /// What the last tile that did not fit would have taken, as far as it came.
-  [[nodiscard]] virtual std::uint64_t bytes_wanted() const = 0;
+  [[nodiscard]] bool work(const GridTile& tile) {
+    context.check_stop();
+    const bool fits = count(tile.box, tile.most_bytes);
+    if (fits) {
+      ++totals.tiles;
+    } else if (tile.is_smallest) {
+      context.admit(std::max(bytes_wanted(), tile.most_bytes + 1));
+    }
+    return fits;
+  }
 
   VolumeTotals totals;
   QueryContext context;
@@ -47,41 +51,23 @@ class TileWorker {
       : totals(walk.empty), context({limit, walk.request.limits.stop}, terrain.store().path()) {}
   TileWorker(const TileWorker&) = delete;
   TileWorker& operator=(const TileWorker&) = delete;
+
+ private:
+  /// Counts a tile. False when that takes more than `most_bytes`: nothing of it is counted then.
+  virtual bool count(const GridBox& tile, std::uint64_t most_bytes) = 0;
+  /// What the last tile that did not fit would have taken, as far as it came.
+  [[nodiscard]] virtual std::uint64_t bytes_wanted() const = 0;
 };
 
-using MakeWorker = std::function<std::unique_ptr<TileWorker>(std::uint64_t limit)>;
-
-/// As many threads as asked for, as long as each has room for a tile of a useful size.
-int threads_within(const VolumeRequest& request) {
-  const std::uint64_t useful = std::max<std::uint64_t>(request.tile_bytes / 4, 1);
-  const std::uint64_t most = std::max<std::uint64_t>(request.limits.memory_bytes / useful, 1);
-  return static_cast<int>(std::min<std::uint64_t>(std::max(request.threads, 1), most));
+TileLimits tile_limits(const VolumeRequest& request) {
+  return {request.limits.memory_bytes, request.tile_bytes, request.threads};
 }
 
-VolumeTotals walk_tiles(const Walk& walk, const MakeWorker& make) {
+template <class Make>
+VolumeTotals walk_tiles(const Walk& walk, const Make& make) {
   VolumeTotals totals = walk.empty;
   if (is_empty(walk.domain)) return totals;
-  TileQueue queue(walk.domain);
-  const int count = threads_within(walk.request);
-  const std::uint64_t limit = walk.request.limits.memory_bytes / static_cast<std::uint64_t>(count);
-  std::vector<std::unique_ptr<TileWorker>> workers;
-  for (int i = 0; i < count; ++i) workers.push_back(make(limit));
-  run_on_threads(count, [&](int i) {
-    TileWorker& worker = *workers[static_cast<std::size_t>(i)];
-    queue.run([&](const GridBox& tile) {
-      worker.context.check_stop();
-      const bool is_small = half_perimeter(tile) <= 2 * kSmallestTile;
-      if (worker.count(tile, is_small ? limit : std::min(limit, walk.request.tile_bytes))) {
-        ++worker.totals.tiles;
-      } else if (is_small) {
-        worker.context.admit(std::max(worker.bytes_wanted(), limit + 1));
-      } else {
-        queue.put_halves(tile);
-      }
-    });
-  });
-  queue.rethrow();
-  for (const auto& worker : workers) {
+  for (const auto& worker : workers_on_tiles(walk.domain, tile_limits(walk.request), make)) {
     worker->totals.cost.add_counts(worker->context.cost);
     totals.add(worker->totals);
   }
@@ -136,7 +122,7 @@ class LevelWorker final : public TileWorker, private LivingVisitor {
   [[nodiscard]] std::uint64_t bytes_wanted() const override { return bytes_wanted_; }
 
  private:
-  /// Of the sides of a triangle, while their array grows.
+  /// Bytes of the sides of a triangle, while their array grows.
   static constexpr std::uint64_t kBytesATriangle = 2 * 3 * sizeof(BorderSide);
 
   /// Without a border nothing is kept; tiles are cut for other threads alone.
@@ -427,7 +413,7 @@ VolumeTotals volume_above_levels(const VolumeSide& side, std::span<const double>
   const VolumeTotals empty = totals_for(side, most);
   const Walk walk{request, side.facts().bounds, empty};
   // A level that cuts between records of one error keeps triangles until the tile has been read.
-  const bool is_alone = threads_within(request) == 1 && side.detail.is_by_error();
+  const bool is_alone = tile_limits(request).workers() == 1 && side.detail.is_by_error();
   return walk_tiles(walk, [&](std::uint64_t limit) {
     return std::make_unique<LevelWorker>(walk, limit, side, levels, is_alone);
   });

@@ -45,7 +45,7 @@ struct VolumeSide {
   MapPoint border_reach;  ///< Twice that, grid units; infinite where nothing bounds it.
 
  private:
-  std::unique_ptr<const StarPredicate> stars_;  ///< Of places; null: everywhere.
+  std::unique_ptr<const StarPredicate> stars_;  ///< The places that are asked; null: everywhere.
 };
 
 /// The heights of a terrain's source, its base deviation added on either side; empty where there is
@@ -54,7 +54,7 @@ struct VolumeSide {
 
 /// What a walk over tiles adds up. Threads: one owner.
 struct VolumeTotals {
-  /// @param most_heights  Of each of the sums.
+  /// @param most_heights  Most heights of each of the sums.
   VolumeTotals(double most_area, std::span<const double> most_heights, double longest_edge)
       : border{FixedSum(std::ldexp(longest_edge, 36)), 0} {
     for (const double most : most_heights) sums.emplace_back(most_area, most);

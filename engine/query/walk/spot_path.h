@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicate of polylines: true when the region of influence meets one of them.
+// The predicate of polylines: true when the roi of a record meets one of them.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/attributes.h"
 
 namespace ptin {

@@ -75,7 +75,7 @@ void SpotSet::mark_patches(std::span<const Spot> spots) {
   }
   patch_columns_ = ((high_x_ - low_x_) >> patch_shift_) + 1;
   patches_.assign(patches(patch_shift_) / 64 + 1, 0);
-  // Of the squares that hold a number along one axis, the first and the last.
+  // The first and the last of the squares that hold a number along one axis.
   const auto squares = [&](std::int64_t below, std::int64_t above, std::int64_t low) {
     const std::int64_t first = std::max<std::int64_t>(above - 1 - low, 0) >> patch_shift_;
     return std::array{first, (below - low) >> patch_shift_};

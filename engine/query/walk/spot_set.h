@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The predicate of a batch of points: true when the region of influence holds one of them.
+// The predicate of a batch of points: true when the roi of a record holds one of them.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 #include "storage/attributes.h"
 
 namespace ptin {
 
-/// True for records whose region of influence holds at least one of some spots and whose error is
+/// True for records whose roi holds at least one of some spots and whose error is
 /// above a tolerance. Exact, so monotone. Threads: immutable.
 class SpotSet final : public AttributePredicate {
  public:
@@ -40,7 +40,7 @@ class SpotSet final : public AttributePredicate {
     if (single_ || !meets(b)) {
       return meets(b);
     }
-    // Of the closed squares of a side those that the box has more of than a line.
+    // The closed squares along one side that the box shares more with than a line.
     const auto squares = [&](std::int64_t from, std::int64_t to, std::int64_t low,
                              std::int64_t high) {
       const std::int64_t first = (std::max(from, low) - low) >> patch_shift_;
@@ -125,7 +125,7 @@ class SpotSet final : public AttributePredicate {
   int patch_shift_ = 0;
   std::int64_t patch_columns_ = 1;
   std::vector<Spot> spots_;           ///< Cell by cell.
-  std::vector<std::uint32_t> index_;  ///< Of each of them among those given.
+  std::vector<std::uint32_t> index_;  ///< Index of each of them among those given.
 };
 
 }  // namespace ptin

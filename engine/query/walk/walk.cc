@@ -38,6 +38,7 @@ struct Look {
 Look look_at(const Tin& tin, const Triangle& t, Spot q, int first, TriangleId from) {
   Look look;
   for (int k = 0; k < 3; ++k) {
+    // Beyond two sides `first` decides: without chance a walk could go round in circles.
     const int i = (first + k) % 3;
     if (from != kNone && t.n[i] == from) {
       continue;  // crossed just now: the spot lies strictly on this side of it
@@ -117,7 +118,8 @@ Place find_spot(const Tin& tin, Spot q, TriangleId start) {
   TriangleId from = kNone;
   std::uint32_t chance = 1;
   for (std::size_t steps = 0; steps <= tin.triangles.size(); ++steps) {
-    chance = chance * 1664525U + 1013904223U;  // Numerical Recipes; only the high bits are used
+    // Numerical Recipes' generator; its low bits repeat soon, so only high ones are used.
+    chance = chance * 1664525U + 1013904223U;
     const Triangle& triangle = tin.triangles[t];
     const Look look = look_at(tin, triangle, q, static_cast<int>((chance >> 24) % 3), from);
     if (look.beyond < 0) {
@@ -129,6 +131,7 @@ Place find_spot(const Tin& tin, Spot q, TriangleId start) {
     from = t;
     t = triangle.n[look.beyond];
   }
+  // A dead triangle counts as having the spot beyond it.
   for (t = 0; t < tin.triangles.size(); ++t) {
     const Look look = tin.is_alive(t) ? look_at(tin, tin.triangles[t], q, 0, kNone) : Look{0, 0};
     if (look.beyond < 0) {
@@ -175,6 +178,7 @@ Footing footing_of(const Tin& tin, Spot q, const Place& place) {
   for (int i = 0; i < 3; ++i) {
     const Int128 weight =
         side(tin.position(t.v[next_corner(i)]), tin.position(t.v[previous_corner(i)]), q);
+    // On an edge the corner opposite is left out: both its triangles name the same two vertices.
     if (weight != 0) {
       f.vertex[static_cast<std::size_t>(f.count)] = t.v[i];
       f.weight[static_cast<std::size_t>(f.count)] = weight;
@@ -182,6 +186,10 @@ Footing footing_of(const Tin& tin, Spot q, const Place& place) {
     }
   }
   sort_by_key(tin, f);
+  if (f.count == 2) {
+    const auto [a, b] = edge_weights(tin.position(f.vertex[0]), tin.position(f.vertex[1]), q);
+    f.weight = {a, b, 0};
+  }
   return f;
 }
 
@@ -195,6 +203,7 @@ double weighted_mean(int count, const std::array<double, 3>& z,
     return z[0];
   }
   if (count == 2) {
+    // Differences are weighed, not heights, so equal heights give exactly that height.
     const double mean = z[0] + (z[1] - z[0]) * (static_cast<double>(weight[1]) /
                                                 static_cast<double>(weight[0] + weight[1]));
     return std::clamp(mean, std::min(z[0], z[1]), std::max(z[0], z[1]));
@@ -245,6 +254,7 @@ void LineWalk::begin_on_edge(TriangleId t, int edge_side) {
   const VertexId b = triangle.v[previous_corner(edge_side)];
   const Int128 turn_a = turn(a);
   if (turn_a == 0) {
+    // p lies strictly between a and b, so one axis on which the line moves shows which is ahead.
     const Spot ahead = spot_of(tin_->position(b));
     const bool to_b =
         q_.x != p_.x ? (q_.x > p_.x) == (ahead.x > p_.x) : (q_.y > p_.y) == (ahead.y > p_.y);
@@ -273,7 +283,7 @@ void LineWalk::enter_through(TriangleId t, int edge_side) {
 }
 
 /// Finds the border edge through which the line comes in, among those that p sees. Goes round the
-/// whole border, since only a test of each edge tells whether p sees it.
+/// whole border, since only a test of each edge shows whether p sees it.
 void LineWalk::begin_outside(const Place& place) {
   TriangleId t = place.triangle;
   int edge_side = place.index;
@@ -281,6 +291,7 @@ void LineWalk::begin_outside(const Place& place) {
   VertexId a = first;
   do {
     const VertexId b = tin_->triangles[t].v[previous_corner(edge_side)];
+    // The line comes in over an edge that has p beyond it. A vertex behind p or q decides nothing.
     if (side(tin_->position(a), tin_->position(b), p_) < 0) {
       const Int128 turn_a = turn(a);
       const Int128 turn_b = turn(b);
@@ -293,6 +304,7 @@ void LineWalk::begin_outside(const Place& place) {
         vertex_ = hit;
         return;
       }
+      // A convex border lets a line in over one edge, so q decides whether it comes so far.
       if (turn_a > 0 && turn_b < 0) {
         const Int128 end = side(tin_->position(a), tin_->position(b), q_);
         meets_ = end >= 0;
@@ -304,8 +316,8 @@ void LineWalk::begin_outside(const Place& place) {
       }
     }
     a = b;
-    t = tin_->vertices[b]
-            .triangle;  // on the border the first of the walk: its border edge begins at b
+    // A vertex of the border names the first of its triangles: its border edge begins at b.
+    t = tin_->vertices[b].triangle;
     edge_side = previous_corner(corner_of(tin_->triangles[t], b));
   } while (a != first);
 }
@@ -313,6 +325,7 @@ void LineWalk::begin_outside(const Place& place) {
 bool LineWalk::next() {
   piece_.from = piece_.triangle == kNone ? entry_ : piece_.to;
   piece_.other = kNone;
+  // A share is an exact fraction, so the end of the line is known without a tolerance.
   const bool at_end = meets_ && piece_.from.numerator == piece_.from.denominator;
   ends_inside_ = ends_inside_ || at_end;
   if (!meets_ || at_end || state_ == State::kDone) {
@@ -344,6 +357,7 @@ void LineWalk::leave_triangle(TriangleId t) {
   const Int128 turns[3] = {turn(triangle.v[0]), turn(triangle.v[1]), turn(triangle.v[2])};
   for (int i = 0; i < 3; ++i) {
     const int j = next_corner(i);
+    // p is strictly inside, so exactly one side, or one corner, has the line go out.
     if (turns[i] < 0 && turns[j] > 0) {
       exit_by_edge(t, previous_corner(i), turns[i], turns[j]);
       return;
@@ -375,6 +389,7 @@ void LineWalk::exit_by_edge(TriangleId t, int edge_side, Int128 right, Int128 le
   const VertexId a = triangle.v[next_corner(edge_side)];
   const VertexId b = triangle.v[previous_corner(edge_side)];
   piece_.triangle = t;
+  // The line stays in t up to this edge: if q lies before the edge, it lies in t.
   const Int128 end = side(tin_->position(a), tin_->position(b), q_);
   if (end > 0) {
     end_at(footing_of(*tin_, q_, {Lies::kInTriangle, t, 0}));
@@ -382,6 +397,7 @@ void LineWalk::exit_by_edge(TriangleId t, int edge_side, Int128 right, Int128 le
   }
   piece_.to = at_edge(a, b, right, left);
   const TriangleId beyond = triangle.n[edge_side];
+  // The domain is convex: a line that leaves it does not come back.
   if (end == 0 || beyond == kNone) {
     ends_inside_ = end == 0;
     state_ = State::kDone;
@@ -390,6 +406,7 @@ void LineWalk::exit_by_edge(TriangleId t, int edge_side, Int128 right, Int128 le
   state_ = State::kIntoEdge;
   triangle_ = beyond;
   side_ = side_of(tin_->triangles[beyond], t);
+  // The ends of the edge keep their turns, so the next triangle asks for that of its apex alone.
   right_turn_ = right;
   left_turn_ = left;
 }
@@ -436,6 +453,7 @@ void LineWalk::step_along_edge() {
   piece_.triangle = triangle_;
   piece_.other = beside_;
   if (compare_with_end(tin_->position(vertex_)) > 0) {
+    // No side is named: footing_of() finds it by its weight of 0.
     end_at(footing_of(*tin_, q_, {Lies::kOnEdge, triangle_, 0}));
     return;
   }
@@ -469,6 +487,7 @@ Crossing LineWalk::at_vertex(VertexId v) const {
   const Spot at = spot_of(tin_->position(v));
   const std::int64_t dx = q_.x - p_.x;
   const std::int64_t dy = q_.y - p_.y;
+  // The vertex is on the line, so both axes give the same fraction; the larger one is never 0 / 0.
   const bool by_x = (dx < 0 ? -dx : dx) >= (dy < 0 ? -dy : dy);
   return {on_vertex(v), magnitude(by_x ? at.x - p_.x : at.y - p_.y), magnitude(by_x ? dx : dy)};
 }
@@ -476,10 +495,12 @@ Crossing LineWalk::at_vertex(VertexId v) const {
 Crossing LineWalk::at_edge(VertexId right, VertexId left, Int128 right_turn,
                            Int128 left_turn) const {
   Crossing c;
+  // An end weighs as much as the other end is away from the line.
   c.footing = {2, {right, left, kNone}, {magnitude(left_turn), magnitude(right_turn), 0}};
   sort_by_key(*tin_, c.footing);
   const GridPoint a = tin_->position(right);
   const GridPoint b = tin_->position(left);
+  // p and q lie on either side of the edge, so their distances to it add up to the whole way.
   c.numerator = magnitude(side(a, b, p_));
   c.denominator = c.numerator + magnitude(side(a, b, q_));
   return c;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Walks over a mesh: to a spot, and along a straight line. Every decision is exact (walk/spot.h),
+// Walks over a mesh: to a spot, and along a straight line. Every decision is exact (shape/spot.h),
 // so a line through vertices, along edges or along the border is walked like any other.
 //
 // The mesh must be valid and whole (mesh/validate.h): a disk over a convex domain. A mesh that
@@ -12,7 +12,7 @@
 
 #include "engine/geometry/height.h"
 #include "engine/mesh/tin.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/shape/spot.h"
 
 namespace ptin {
 
@@ -107,7 +107,7 @@ struct Crossing {
 
 /// A point of a line, and the surface there, apart from a mesh.
 struct LinePoint {
-  WeightedCodes ground;  ///< Of no vertex where there is no surface.
+  WeightedCodes ground;  ///< Count 0 where there is no surface.
   Int128 numerator = 0;  ///< As Crossing.
   Int128 denominator = 1;
 

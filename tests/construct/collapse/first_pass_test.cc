@@ -14,7 +14,7 @@
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/mesh/triangle_holds.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/support/share_of_cases.h"

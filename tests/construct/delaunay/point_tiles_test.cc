@@ -16,7 +16,7 @@
 #include "engine/construct/hierarchy/tile_push.h"
 #include "engine/construct/tile/part_surface.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/point_sets.h"
@@ -168,7 +168,8 @@ class PointTiles : public testing::TestWithParam<PointKind> {};
 TEST_P(PointTiles, PartsOfTheSurfaceAreTheWhole) {
   const TestTerrain terrain = terrain_of(GetParam(), 2000, 9);
   const PointBuckets buckets = buckets_of(GetParam(), 2000, 9);
-  const TileTree tree = point_tree(buckets, 6);
+  const TileTree tree =
+      TileTree::over_points(buckets.size(), 6, std::make_shared<const ConvexHull>(buckets.hull()));
   const oracle::TinSurface whole(terrain.full, terrain.tile.units.heights);
   PointTileStarter starter(buckets, tree, terrain.tile.units, {});
   std::vector<StartedTile> parts;
@@ -211,7 +212,8 @@ TEST_P(PointTiles, LocksVerticesWithTrianglesInOtherTiles) {
     }
   }
   const PointBuckets buckets = buckets_of(GetParam(), 3000, 4);
-  const TileTree tree = point_tree(buckets, 6);
+  const TileTree tree =
+      TileTree::over_points(buckets.size(), 6, std::make_shared<const ConvexHull>(buckets.hull()));
   PointTileStarter starter(buckets, tree, terrain.tile.units, {});
   for (std::int64_t i = 0; i < 8; ++i) {
     Tile tile = starter.start(tree.window({0, i % 4, i / 4})).tile;

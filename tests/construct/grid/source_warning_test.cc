@@ -43,10 +43,11 @@ TEST(SourceWarnings, AreTakenFromTheFileThatTheyWerePutInto) {
   all.join(one("b.tif", "second", 1));
   all.add({"other", "of no file", ""});
   ArrayFileWriter writer(FileLayer::system(), folder.file("warnings"));
-  put_warnings(writer, all);
+  writer.values(all);
   const ArrayFileFacts facts = writer.finish();
   ArrayFileReader reader(folder.file("warnings"), facts);
-  const SourceWarnings taken = take_warnings(reader);
+  SourceWarnings taken;
+  reader.values(taken);
   EXPECT_TRUE(reader.at_end());
   ASSERT_EQ(taken.all().size(), 2U);
   const SourceWarning& w = taken.all()[0];

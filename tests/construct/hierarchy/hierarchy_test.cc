@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Terrains built over a tree of tiles keep every promise of those built as one tile: the records of
-// all segments are refined and held against all samples, since witnesses order them and tightening
-// must make them true.
+// all segments are refined and held against all samples, since carried samples order them and
+// tightening must make them true.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -233,7 +233,10 @@ TEST(Lifetimes, AreThoseOfTheSplitsOverPoints) {
          test::some_of<std::optional<double>>({std::nullopt, 400.0})) {
       SCOPED_TRACE(name_of(kind) + (max_edge ? ", voids" : ""));
       const PointBuckets points = buckets_of(kind, 900, 3);
-      Source source{point_tree(points, 5), measure_units(points.frame(), 0.1), {}};
+      Source source{TileTree::over_points(points.size(), 5,
+                                          std::make_shared<const ConvexHull>(points.hull())),
+                    measure_units(points.frame(), 0.1),
+                    {}};
       source.make_starter = [&]() -> LeafStarter {
         const auto starter =
             std::make_shared<PointTileStarter>(points, source.tree, source.units, max_edge);
@@ -280,7 +283,10 @@ TEST(Lifetimes, AreThoseOfTheSplitsOverATinWithHoles) {
   oracle::write_text(folder.file("in.obj"), obj_with_holes(30));
   const TinTriangles triangles =
       TinTriangles::read(folder.file("in.obj"), {}, {FileLayer::system(), folder.file("")});
-  Source source{tin_tree(triangles, 5), measure_units(triangles.frame(), 0.1), {}};
+  Source source{TileTree::over_points(triangles.counts().vertices, 5,
+                                      std::make_shared<const ConvexHull>(triangles.hull())),
+                measure_units(triangles.frame(), 0.1),
+                {}};
   source.make_starter = [&]() -> LeafStarter {
     return [&](const SampleRange& window) {
       return start_tin_tile(triangles, source.tree, window, source.units);

@@ -57,7 +57,7 @@ TestTerrain read_window(const std::string& path, std::int64_t x0, std::int64_t y
   h = std::min(h, source.height() - y0);
   std::vector<HeightBits> heights(static_cast<std::size_t>(w * h));
   std::vector<std::uint8_t> valid(heights.size());
-  source.read(x0, y0, w, h, heights, valid);
+  source.read({x0, y0, w, h}, heights, valid);
   return oracle::make_sampled(std::filesystem::path(path).filename().string(), static_cast<int>(w),
                               static_cast<int>(h), heights, valid, source.frame().heights, {}, 0.1);
 }

@@ -17,7 +17,7 @@
 namespace ptin {
 namespace {
 
-using Line = std::vector<LineVertex>;
+using Line = std::vector<GridVertex>;
 
 LineGraph graph_of(const std::vector<Line>& lines, bool boundary = false) {
   LineGraph graph;
@@ -58,7 +58,7 @@ std::string text_of(const LineGraph& g) {
   std::string text;
   for (const LineEdge& e : g.edges) {
     for (const std::uint32_t v : {e.a, e.b}) {
-      const LineVertex& w = g.vertices[v];
+      const GridVertex& w = g.vertices[v];
       text += "(" + std::to_string(w.position.x) + " " + std::to_string(w.position.y) + " " +
               std::to_string(std::lround(w.height)) + ")";
     }
@@ -179,12 +179,12 @@ RC_GTEST_PROP(LineNoding, EdgesMeetInEndsAloneWhateverTheOrder, ()) {
   }
   // Every vertex of a line is there, and near each point of a line there is an edge.
   for (const Line& line : lines) {
-    for (const LineVertex& v : line) {
+    for (const GridVertex& v : line) {
       const bool alone = std::all_of(line.begin(), line.end(),
-                                     [&](const LineVertex& w) { return w.position == v.position; });
+                                     [&](const GridVertex& w) { return w.position == v.position; });
       RC_ASSERT(alone ||
                 std::any_of(graph.vertices.begin(), graph.vertices.end(),
-                            [&](const LineVertex& w) { return w.position == v.position; }));
+                            [&](const GridVertex& w) { return w.position == v.position; }));
     }
   }
   std::shuffle(lines.begin(), lines.end(), random);

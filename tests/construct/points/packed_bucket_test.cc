@@ -13,9 +13,9 @@ namespace ptin {
 namespace {
 
 /// Packs and unpacks; returns the bytes that took.
-std::size_t expect_same(const std::vector<PlacedHeight>& points) {
+std::size_t expect_same(const std::vector<GridVertex>& points) {
   GridBox box;
-  for (const PlacedHeight& p : points) {
+  for (const GridVertex& p : points) {
     box = united(box, p.position);
   }
   std::vector<std::byte> bytes;
@@ -23,7 +23,7 @@ std::size_t expect_same(const std::vector<PlacedHeight>& points) {
   const std::size_t size = bytes.size();
   EXPECT_LE(size, 16 * points.size() + 10);
   bytes.resize(size + kUnpackSlack, std::byte{0xA5});
-  std::vector<PlacedHeight> back(points.size());
+  std::vector<GridVertex> back(points.size());
   unpack_bucket(std::span(bytes).first(size), box, back);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(back[i].position, points[i].position) << i;
@@ -35,12 +35,12 @@ std::size_t expect_same(const std::vector<PlacedHeight>& points) {
 }
 
 TEST(PackedBucket, TakesWhatPointsDifferBy) {
-  std::vector<PlacedHeight> points;
+  std::vector<GridVertex> points;
   for (int i = 0; i < 1024; ++i) {
     points.push_back({{1'000'000'000 + i % 32, 5'000 + i / 32}, 3000.0 + i % 16});
   }
   EXPECT_EQ(expect_same(points), 10U + 1024U * (5 + 5 + 4) / 8);
-  for (PlacedHeight& p : points) {
+  for (GridVertex& p : points) {
     p.height = 1.0;
   }
   EXPECT_EQ(expect_same(points), 10U + 1024U * 10 / 8);
@@ -64,8 +64,8 @@ RC_GTEST_PROP(PackedBucket, GivesBackWhatItGot, ()) {
   const auto bits_x = *rc::gen::inRange(0, 31), bits_y = *rc::gen::inRange(0, 31);
   const auto kind = *rc::gen::inRange(0, 3);
   const auto bits_z = *rc::gen::inRange(0, 53);
-  std::vector<PlacedHeight> points(count);
-  for (PlacedHeight& p : points) {
+  std::vector<GridVertex> points(count);
+  for (GridVertex& p : points) {
     p.position.x = static_cast<std::int32_t>(random() & ((std::uint64_t{1} << bits_x) - 1));
     p.position.y = static_cast<std::int32_t>(random() & ((std::uint64_t{1} << bits_y) - 1));
     const double z = static_cast<double>(random() & ((std::uint64_t{1} << bits_z) - 1)) - 1000.0;
@@ -76,7 +76,7 @@ RC_GTEST_PROP(PackedBucket, GivesBackWhatItGot, ()) {
 }
 
 TEST(PackedBucket, ReadsNothingBehindDamagedBytes) {
-  std::vector<PlacedHeight> points(100);
+  std::vector<GridVertex> points(100);
   for (int i = 0; i < 100; ++i) {
     points[static_cast<std::size_t>(i)] = {{i * 1000, i * 77}, i * 0.37};
   }

@@ -67,7 +67,7 @@ RC_GTEST_PROP(HeightFinder, JoinedIsThatOfAll, ()) {
   }
   HeightFinder joined(whole, 0.25);
   for (const HeightFinder& part : parts) {
-    joined.join(HeightFinder(part.known()));
+    joined.join(part);
   }
   const HeightFit a = joined.fit(), b = all.fit();
   RC_ASSERT(a.encoding == b.encoding);

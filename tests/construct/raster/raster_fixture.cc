@@ -68,7 +68,7 @@ Heights heights_of(const RasterSource& source) {
   const auto n = static_cast<std::size_t>(source.width() * source.height());
   std::vector<HeightBits> bits(n);
   std::vector<std::uint8_t> valid(n);
-  source.read(0, 0, source.width(), source.height(), bits, valid);
+  source.read({0, 0, source.width(), source.height()}, bits, valid);
   Heights heights;
   for (std::size_t i = 0; i < n; ++i) {
     heights.push_back(valid[i] ? source.frame().heights.height(bits[i])

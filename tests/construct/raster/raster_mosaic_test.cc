@@ -34,7 +34,7 @@ TEST(RasterSource, ReadsAnyWindowAsPartOfTheWhole) {
       const std::int64_t w = 10, h = 10;
       std::vector<HeightBits> bits(100);
       std::vector<std::uint8_t> valid(100);
-      source.read(x, y, w, h, bits, valid);
+      source.read({x, y, w, h}, bits, valid);
       for (std::int64_t i = 0; i < 100; ++i) {
         const double expected = whole[static_cast<std::size_t>((y + i / w) * 70 + x + i % w)];
         ASSERT_EQ(valid[i] == 0, std::isnan(expected));
@@ -50,9 +50,9 @@ TEST(RasterSource, RefusesAWindowOutsideOfTheTerrain) {
   const RasterSource source = open(small());
   std::vector<HeightBits> bits(4);
   std::vector<std::uint8_t> valid(4);
-  EXPECT_THROW(source.read(2, 0, 2, 2, bits, valid), Error);
-  EXPECT_THROW(source.read(-1, 0, 2, 2, bits, valid), Error);
-  EXPECT_THROW(source.read(0, 0, 1, 2, bits, valid), Error);
+  EXPECT_THROW(source.read({2, 0, 2, 2}, bits, valid), Error);
+  EXPECT_THROW(source.read({-1, 0, 2, 2}, bits, valid), Error);
+  EXPECT_THROW(source.read({0, 0, 1, 2}, bits, valid), Error);
 }
 
 TEST(RasterSource, JoinsSeveralRastersOfOneGrid) {

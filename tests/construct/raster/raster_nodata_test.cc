@@ -73,7 +73,7 @@ std::vector<RasterSuspects::Suspect> suspects_of(const std::vector<float>& value
     const auto value = static_cast<double>(values[at]);
     one.add<float>(std::span(values).subspan(at, 1), std::span(valid).subspan(at, 1), value, value,
                    [&](std::size_t) { return at; });
-    all.join(one.known());
+    all.join(one);
   }
   return all.apart();
 }

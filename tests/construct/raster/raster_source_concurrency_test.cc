@@ -20,7 +20,7 @@ struct Samples {
 Samples read(const RasterSource& source, std::int64_t x, std::int64_t y, std::int64_t side) {
   const auto n = static_cast<std::size_t>(side * side);
   Samples samples{std::vector<HeightBits>(n), std::vector<std::uint8_t>(n)};
-  source.read(x, y, side, side, samples.heights, samples.valid);
+  source.read({x, y, side, side}, samples.heights, samples.valid);
   return samples;
 }
 

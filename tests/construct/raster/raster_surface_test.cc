@@ -128,8 +128,8 @@ TEST(RasterSurface, SkipsCrossingsInVoids) {
 /// A window of a raster with voids that has no border in reach: an edge of the border through it has
 /// moved by nobody knows how much.
 TEST(RasterSurface, FarFromAnyBorderLetsNoBorderThrough) {
-  RasterSurface surface(std::vector<HeightBits>(30, 0), std::vector<std::uint8_t>(30, 1), 6, 5,
-                        oracle::kInt, {100, 200});  // from (100, 200) to (105, 204)
+  RasterSurface surface(std::vector<HeightBits>(30, 0), std::vector<std::uint8_t>(30, 1),
+                        {100, 200, 6, 5}, oracle::kInt);  // from (100, 200) to (105, 204)
   EXPECT_EQ(surface.border_move({90, 201}, {110, 203}), 0.0) << "there are no voids";
   surface.set_far_from_border();
   for (const auto& [a, b] : {std::pair(GridPoint{90, 201}, GridPoint{110, 203}),

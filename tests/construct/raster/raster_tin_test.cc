@@ -36,7 +36,7 @@ Grid grid(std::int32_t width, std::vector<int> heights, std::vector<std::uint8_t
 }
 
 Tin tin_of(const Grid& g, GridPoint origin = {}) {
-  return make_raster_tin(g.heights, g.valid, g.width, g.height, kInt, origin);
+  return make_raster_tin(g.heights, g.valid, {origin.x, origin.y, g.width, g.height}, kInt);
 }
 
 Grid arbitrary_grid(int max_side, int void_percent) {
@@ -117,9 +117,9 @@ TEST(RasterTin, ComparesFloatHeightsAsNumbers) {
   for (int i = 0; i < 4; ++i) {
     g.heights[i] = kFloat.bits(heights[i]);
   }
-  EXPECT_EQ(make_raster_tin(g.heights, g.valid, 2, 2, kFloat, {0, 0}).triangles[0].v[2], 3U);
+  EXPECT_EQ(make_raster_tin(g.heights, g.valid, {0, 0, 2, 2}, kFloat).triangles[0].v[2], 3U);
   g.heights[0] = kFloat.bits(-1.75);
-  EXPECT_EQ(make_raster_tin(g.heights, g.valid, 2, 2, kFloat, {0, 0}).triangles[0].v[2], 2U);
+  EXPECT_EQ(make_raster_tin(g.heights, g.valid, {0, 0, 2, 2}, kFloat).triangles[0].v[2], 2U);
 }
 
 TEST(RasterTin, KeepsThreeCornersOfACellWithOneVoidOnTheSurface) {
@@ -223,12 +223,12 @@ RC_GTEST_PROP(LoneSamples, AreThoseWithHeightThatTouchNoSurfaceTriangle, ()) {
       expected.push_back(i);
     }
   }
-  const auto lone = find_lone_samples(g.valid, g.width, g.height);
+  const auto lone = find_lone_samples(g.valid, {0, 0, g.width, g.height});
   RC_ASSERT(lone == expected);
   for (std::uint64_t i : lone) {
     g.valid[i] = 0;
   }
-  RC_ASSERT(find_lone_samples(g.valid, g.width, g.height).empty());
+  RC_ASSERT(find_lone_samples(g.valid, {0, 0, g.width, g.height}).empty());
 }
 
 }  // namespace

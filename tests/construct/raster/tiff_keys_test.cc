@@ -47,16 +47,18 @@ TEST(TiffKeys, AreTheSameInEitherByteOrder) {
   }
 }
 
-/// A TIFF cut off anywhere has keys, or none, and is no error.
-TEST(TiffKeys, OfAFileThatIsCutOffAreEmpty) {
+TEST(TiffKeys, OfAFileThatIsCutOffAreThoseOfTheWholeOrNone) {
   const test::TestFolder folder(test::TestFolder::Size::kSmall);
   write_tiff(folder.file("whole.tif"), "ENDIANNESS=BIG", "BIGTIFF=NO");
   std::ifstream in(folder.file("whole.tif"), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const GeoTiffKeys whole = keys_of_tiff(folder.file("whole.tif"));
   for (std::size_t length = 0; length < bytes.size(); length += 7) {
     std::ofstream(folder.file("cut.tif"), std::ios::binary) << bytes.substr(0, length);
     const GeoTiffKeys keys = keys_of_tiff(folder.file("cut.tif"));
-    EXPECT_TRUE(keys.directory.empty() || keys.directory.size() >= 8) << length;
+    EXPECT_TRUE(keys.directory.empty() || keys.directory == whole.directory) << length;
+    EXPECT_TRUE(keys.doubles.empty() || keys.doubles == whole.doubles) << length;
+    EXPECT_TRUE(keys.text.empty() || keys.text == whole.text) << length;
   }
 }
 

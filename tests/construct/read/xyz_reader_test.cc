@@ -34,7 +34,7 @@ std::vector<Row> read(const std::string& text, const std::string& name = "points
   const MemoryFile file(name, text);
   XyzReader reader(file.path(), columns);
   std::vector<Row> rows;
-  XyzPoint p;
+  SourcePoint p;
   while (reader.next(p)) {
     rows.push_back({to_double(p.x), to_double(p.y), to_double(p.z)});
   }

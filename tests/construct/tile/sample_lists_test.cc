@@ -65,7 +65,7 @@ TEST(SampleLists, KeepListsThroughGapsThatClose) {
       checked.give_back(random() % checked.slots.size());
     }
     ASSERT_TRUE(checked.holds());
-    checked.slots[random() % checked.slots.size()].count /= 2;  // as witnesses are cut down
+    checked.slots[random() % checked.slots.size()].count /= 2;  // as carried samples are
     for (std::size_t i = 0; i < checked.slots.size(); ++i) {
       checked.known[i].resize(checked.slots[i].count);
     }

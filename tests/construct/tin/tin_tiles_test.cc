@@ -10,7 +10,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/construct/tin/tin_source.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/construct/made_raster.h"

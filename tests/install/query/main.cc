@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <engine/error.h>
+#include <engine/query/refine/refine.h>
 #include <engine/query/terrain.h>
 
 int main(int count, char** arguments) {

@@ -14,7 +14,7 @@
 #include "engine/crs/border_move.h"
 #include "engine/error.h"
 #include "engine/mesh/triangle_holds.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 

@@ -2,6 +2,7 @@
 //
 // Highest and lowest points of polygons against all triangles, in rationals.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -11,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/highest.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/polygon_oracle.h"
 #include "tests/query/volume/volume_oracle.h"
@@ -185,6 +186,48 @@ TEST(Highest, OfARectangleIsThatOfItsWindow) {
     EXPECT_NEAR(polygon.point.height, window.point.height, 1e-9);
     EXPECT_EQ(polygon.vertices.size(), window.vertices.size());
   }
+}
+
+/// No point of the border lies above both ends of an edge, where rounding of areas may put it: of the
+/// first two rectangles it did.
+TEST(Highest, OfARegionWithSidesAlongRowsOfVerticesIsAVertex) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const StoreFacts& facts = terrain.store().facts();
+  std::vector<std::array<GridPoint, 2>> corners = {{{{107, 149}, {85, 7}}},
+                                                   {{{85, 18}, {107, 166}}}};
+  std::mt19937_64 random(5);
+  const auto coordinate = [&](std::int32_t low, std::int32_t high) {
+    return low + static_cast<std::int32_t>(random() % (std::uint64_t(high - low) + 1));
+  };
+  const GridBox& b = facts.bounds;
+  for (int i = 0; i < 40; ++i) {
+    const GridPoint from{coordinate(b.min_x, b.max_x - 1), coordinate(b.min_y, b.max_y - 1)};
+    corners.push_back(
+        {from, GridPoint{coordinate(from.x + 1, b.max_x), coordinate(from.y + 1, b.max_y)}});
+  }
+  for (const auto& [from, to] : corners) {
+    const MapPoint p = facts.map.to_map(from.x, from.y), q = facts.map.to_map(to.x, to.y);
+    HighestRequest request;
+    for (const bool lowest : {true, false}) {
+      request.lowest = lowest;
+      request.region =
+          Window{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
+      EXPECT_TRUE(highest(terrain, request).at_vertex);
+      request.region = Polygon{{{p, {q.x, p.y}, q, {p.x, q.y}}}};
+      EXPECT_TRUE(highest(terrain, request).at_vertex);
+    }
+  }
+}
+
+TEST(Highest, OfAWindowThatIsOnePlaceIsTheHeightThere) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const MapPoint p = terrain.store().facts().map.to_map(20.25, 30.5);
+  HighestRequest request;
+  request.region = Window{p.x, p.y, p.x, p.y};
+  const HighestResult got = highest(terrain, request);
+  ASSERT_EQ(got.state, PointState::kSurface);
+  const MapPoint points[] = {p};
+  EXPECT_NEAR(got.point.height, terrain.locate(points, {}).points[0].height, 1e-9);
 }
 
 TEST(Highest, OfAPlaceWithoutInsideIsRefused) {

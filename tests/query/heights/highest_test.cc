@@ -14,7 +14,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/locate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"
@@ -258,8 +258,7 @@ std::uint64_t pages_of_one_point(const Terrain& terrain, const HighestRequest& r
                                  MapPoint point) {
   LocateRequest where;
   where.detail.vertices = request.detail.vertices;
-  where.by = AnswerBy::kSplits;
-  return locate(terrain, {&point, 1}, where).cost.io.pages;
+  return terrain.locate({&point, 1}, where, AnswerBy::kSplits).cost.io.pages;
 }
 
 // Finding the last of the first so many vertices reads most of their pages: more than all else.

@@ -11,7 +11,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot_set.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/far_file.h"
@@ -124,7 +124,7 @@ TEST(LocateFarTerrain, TakesTwoRoundsBehindTheOpening) {
   const std::size_t front = test::front_with_directory(files.path);
   for (const MapPoint& at : points) {
     const Far far(files.bytes, front);
-    const LocateResult result = far.terrain.locate({&at, 1});
+    const LocateResult result = far.terrain.locate({&at, 1}, {});
     EXPECT_LE(far.source->rounds.size(), 3U);
     EXPECT_EQ(result.cost.io.remote_rounds, far.source->rounds.size());
     further += far.source->rounds.size() > 2 ? 1 : 0;
@@ -137,7 +137,7 @@ TEST(LocateFarTerrain, TakesTwoRoundsBehindTheOpening) {
 
 std::string message_of(const Far& far, const MapPoint& at) {
   try {
-    static_cast<void>(far.terrain.locate({&at, 1}));
+    static_cast<void>(far.terrain.locate({&at, 1}, {}));
   } catch (const Error& e) {
     return e.code() == ErrorCode::corruption ? e.message() : "another error";
   }
@@ -163,7 +163,7 @@ TEST(LocateFarTerrain, NeverAnswersFromADamagedDirectory) {
     for (std::uint64_t at = s.offset; at < s.offset + s.bytes; at += 97) bytes[at] ^= std::byte{4};
     for (const MapPoint& at : points) {
       const Far far(bytes);
-      if (near.locate({&at, 1}).points[0].state == PointState::kOutside) continue;
+      if (near.locate({&at, 1}, {}).points[0].state == PointState::kOutside) continue;
       EXPECT_EQ(message_of(far, at).find(message), 0U) << message_of(far, at);
     }
   }

@@ -13,7 +13,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot_set.h"
 #include "engine/query/walk/walk.h"
 #include "tests/query/built_terrain.h"
@@ -165,8 +165,7 @@ TEST(Locate, AnswersByStarsAsBySplits) {
       request.detail = level;
       const LocateResult stars = locate(terrain, points, request);
       const LocateResult few = locate(terrain, std::span(points).first(40), request);
-      request.by = AnswerBy::kSplits;
-      const LocateResult splits = locate(terrain, points, request);
+      const LocateResult splits = terrain.locate(points, request, AnswerBy::kSplits);
       EXPECT_EQ(stars.certified_error, splits.certified_error);
       EXPECT_EQ(stars.certified_deviation, splits.certified_deviation);
       EXPECT_EQ(stars.cost.records_applied, 0U);
@@ -198,8 +197,7 @@ RC_GTEST_PROP(Locate, AnswersByStarsAsBySplitsOnAnyTerrain, (std::uint64_t seed)
     request.detail.vertices = terrain.t0().vertices.size() + random() % (h.records.size() + 1);
   }
   const LocateResult stars = locate(terrain, points, request);
-  request.by = AnswerBy::kSplits;
-  const LocateResult splits = locate(terrain, points, request);
+  const LocateResult splits = terrain.locate(points, request, AnswerBy::kSplits);
   for (std::size_t i = 0; i < points.size(); ++i) {
     expect_same(stars.points[i], splits.points[i]);
   }
@@ -210,16 +208,15 @@ TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
   const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   const std::vector<MapPoint> points = random_points(terrain.store().facts(), 3000, 4);
   LocateRequest request;
-  request.by = AnswerBy::kSplits;
-  const LocateResult free = locate(terrain, points, request);
+  const LocateResult free = terrain.locate(points, request, AnswerBy::kSplits);
   request.limits.memory_bytes = 3000 * 200 + (std::uint64_t{3} << 20);
-  const LocateResult tight = locate(terrain, points, request);
+  const LocateResult tight = terrain.locate(points, request, AnswerBy::kSplits);
   EXPECT_GT(tight.cost.records_applied, free.cost.records_applied);
   for (std::size_t i = 0; i < points.size(); ++i) {
     ASSERT_TRUE(same(free.points[i].height, tight.points[i].height));
   }
   request.limits.memory_bytes = 1000;
-  EXPECT_THROW(static_cast<void>(locate(terrain, points, request)), Error);
+  EXPECT_THROW(static_cast<void>(terrain.locate(points, request, AnswerBy::kSplits)), Error);
 }
 
 /// The exact height lies in every interval that an approximation reports.

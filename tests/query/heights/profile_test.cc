@@ -14,7 +14,7 @@
 
 #include "engine/error.h"
 #include "engine/query/heights/locate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "engine/query/walk/spot_path.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
@@ -283,7 +283,7 @@ void check_heights(const Terrain& terrain, std::span<const ProfilePoint> found,
     const auto& [x, y] = p.position;
     const MapPoint places[] = {
         p.position, {x - kBeside, y}, {x + kBeside, y}, {x, y - kBeside}, {x, y + kBeside}};
-    const LocateResult located = terrain.locate(places);
+    const LocateResult located = terrain.locate(places, {});
     RC_ASSERT(std::isnan(p.height) == (p.state != PointState::kSurface));
     RC_ASSERT(std::any_of(located.points.begin(), located.points.end(), [&](const auto& at) {
       return at.state == p.state && (std::isnan(p.height) || std::abs(p.height - at.height) < 1e-6);
@@ -308,7 +308,7 @@ RC_GTEST_PROP(Profile, StandsAtEveryStationAtTheHeightOfItsPlace, (std::uint64_t
     while (line.size() < 3) line.push_back(map.map(nasty_spot(random, h.full)));
     if (line[0] == line[1] && line[1] == line[2]) return;
   }
-  const ProfileResult breaks = terrain.profile(lines);
+  const ProfileResult breaks = terrain.profile(lines, {});
   ProfileRequest request;
   request.station_step = random() % 2 == 0 ? 0.25 : 0.01 + 1e-6 * double(random() % 2'000'000);
   const ProfileResult found = terrain.profile(lines, request);

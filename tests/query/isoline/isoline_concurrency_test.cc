@@ -12,7 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline_tiles.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin {
@@ -44,8 +44,8 @@ std::pair<std::vector<std::vector<MapPoint>>, std::uint64_t> traced(
     std::uint64_t piece_bytes = 64 << 20) {
   const LevelSet levels(terrain.levels(), terrain.hierarchy.facts.heights);
   const Detail detail(terrain.tin.store());
-  const TileTraceRequest request{levels,      detail,  nullptr, 256 << 20,
-                                 piece_bytes, threads, {},      tile_bytes};
+  const TileTraceRequest request{levels,      detail, nullptr, {256 << 20, tile_bytes, threads},
+                                 piece_bytes, {}};
   PointStore points(64 << 20, {});
   QueryCost cost;
   const TileTraces traces = trace_tiles(terrain.tin, request, points, cost);

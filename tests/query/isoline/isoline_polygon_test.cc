@@ -13,7 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/query/isoline/isoline.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/isoline/isoline_listing.h"
 #include "tests/query/polygon_oracle.h"
@@ -139,7 +139,7 @@ TEST(Isolines, OfAPolygonAreThoseOfTheTerrainCut) {
     std::mt19937_64 random(seed);
     const Hierarchy h = reference::small_terrain(seed);
     const TemporaryStore store(h);
-    const OpenedTerrain terrain(store.open());
+    const Terrain terrain(store.open());
     IsolineRequest request;
     request.levels = reference::random_levels(random, h, 5);
     if (seed % 2 == 0) request.detail.tolerance = 0.5 * double(seed % 7);
@@ -147,8 +147,7 @@ TEST(Isolines, OfAPolygonAreThoseOfTheTerrainCut) {
     const Polygon polygon = any_polygon(random, h.facts);
     request.region = polygon;
     for (const AnswerBy by : {AnswerBy::kStars, AnswerBy::kSplits}) {
-      request.by = by;
-      const Isolines got = isolines(terrain, request);
+      const Isolines got = terrain.isolines(request, by);
       expect_same(stretches_of(got), cut_in_rationals(stretches_of(whole), polygon));
       expect_joined(got, whole, polygon);
       EXPECT_EQ(got.certified_error, whole.certified_error);

@@ -16,11 +16,11 @@
 
 #include "engine/error.h"
 #include "engine/mesh/star.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/total_order.h"
 #include "engine/query/stream/stream_reader.h"
 #include "engine/query/stream/stream_writer.h"
-#include "engine/query/terrain.h"
 #include "tests/query/isoline/isoline_listing.h"
 
 namespace ptin {

@@ -18,7 +18,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/isoline/isoline_clip.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/page_columns.h"
 #include "tests/query/isoline/isoline_listing.h"
 

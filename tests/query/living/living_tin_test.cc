@@ -14,7 +14,7 @@
 
 #include "engine/mesh/link.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/far_file.h"
 #include "tests/query/reference_hierarchy.h"

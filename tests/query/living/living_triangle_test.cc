@@ -13,7 +13,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "engine/query/terrain.h"
+#include "engine/query/living/living_page.h"
+#include "engine/query/questions.h"
 #include "storage/packed_rtree.h"
 #include "storage/short_float.h"
 #include "tests/query/built_terrain.h"
@@ -36,18 +37,43 @@ Corners corners_of(const LivingTriangle& t) {
   return {k[0], k[1], k[2], t.is_void ? TriangleClass::kVoid : TriangleClass::kSurface};
 }
 
+LivingStars living_of(const StoreFile& store, PageId page, const LivingFilter& filter) {
+  LivingStars living;
+  const auto look = [&](const RecordPage& p) { take_living(p, filter, living); };
+  IoCounters counters;
+  store.look_at(page, look, counters);
+  return living;
+}
+
+/// The triangles of whole stars that live at a level.
+std::vector<LivingTriangle> living_of_rings(const StarredRecords& stars, double level) {
+  std::vector<LivingTriangle> living;
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const VertexSplit& r = stars.splits[i];
+    const auto ring = stars.ring(i);
+    for (std::size_t k = 0; k + (has_closed_ring(r) ? 0 : 1) < ring.size(); ++k) {
+      if (r.error > level && ring[k].death <= level) {
+        LivingTriangle t;
+        t.corner[0].position = r.u;
+        t.corner[1].position = ring[k].position;
+        t.corner[2].position = ring[(k + 1) % ring.size()].position;
+        t.is_void = (ring[k].flags & RingCorner::kVoid) != 0;
+        living.push_back(t);
+      }
+    }
+  }
+  return living;
+}
+
 /// All triangles that live at a level, sorted. A negative level: the finest TIN.
 std::vector<Corners> living(const StoreFile& store, double level) {
   std::vector<Corners> result;
   const auto take = [&](const LivingTriangle& t) { result.push_back(corners_of(t)); };
   visit_living(store.t0(), level, take);
-  StarFilter filter;
+  LivingFilter filter;
   filter.level = level;
-  IoCounters counters;
   for (std::uint64_t p = 0; p < store.pages().page_count(); ++p) {
-    StarredRecords stars;
-    (void)store.read_stars(PageId{p}, filter, stars, counters);
-    visit_living(stars, level, store.facts().heights, take);
+    visit_living(living_of(store, PageId{p}, filter), store.facts().heights, take);
   }
   std::sort(result.begin(), result.end());
   return result;
@@ -96,7 +122,7 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
   for (int i = 0; i < 20; ++i) {
     const auto at = [&] { return static_cast<std::int32_t>(random() % 257); };
     const GridPoint low{at(), at()};
-    StarFilter filter;
+    LivingFilter filter;
     filter.box = {low.x, low.y, low.x + 9, low.y + 5};
     filter.level = i % 2 == 0 ? -1.0 : 3.0;
     std::vector<Corners> all, found;
@@ -109,14 +135,12 @@ TEST(LivingTriangles, OfALevelAreFoundWhereTheyMeetABox) {
     std::vector<StarPage> pages;
     store.star_index().search_stars(filter, pages, counters);
     for (const StarPage& page : pages) {
-      StarredRecords stars;
-      (void)store.read_stars(page.id, filter, stars, counters);
-      visit_living(stars, filter.level, store.facts().heights, take_into(found));
+      visit_living(living_of(store, page.id, filter), store.facts().heights, take_into(found));
     }
     for (std::uint64_t p = 0; p < store.pages().page_count(); ++p) {
       StarredRecords stars;
       store.read_starred(PageId{p}, stars, counters);
-      visit_living(stars, filter.level, store.facts().heights, take_into(all));
+      std::ranges::for_each(living_of_rings(stars, filter.level), take_into(all));
     }
     std::sort(all.begin(), all.end());
     std::sort(found.begin(), found.end());

@@ -15,8 +15,8 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
-#include "engine/query/walk/spot.h"
+#include "engine/query/questions.h"
+#include "engine/query/shape/spot.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
 
@@ -69,7 +69,7 @@ RC_GTEST_PROP(ReceivedMesh, TellsTheHeightsOfItsLevelAndHoldsThoseOfTheFullTin,
     LocateRequest request;
     request.detail = r.detail;
     const LocatedPoint level = r.terrain.locate({&at, 1}, request).points[0];
-    const LocatedPoint full = r.terrain.locate({&at, 1}).points[0];
+    const LocatedPoint full = r.terrain.locate({&at, 1}, {}).points[0];
     const LocatedPoint found = locate_on(r.mesh(), at);
     RC_ASSERT(found.state == level.state);
     RC_ASSERT(same(found.height, level.height));

@@ -11,7 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 

@@ -16,7 +16,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
@@ -62,7 +62,7 @@ TEST(HierarchyCheck, FindsNothingInWhatWasBuilt) {
                                                       {"coast_257.tif", 2.0},
                                                       {"ground_points.csv", 0.0}})) {
     const Terrain& terrain = reference::built_terrain(name, max_error);
-    const HierarchyReport report = terrain.check_hierarchy();
+    const HierarchyReport report = terrain.check_hierarchy({});
     EXPECT_TRUE(report.is_sound()) << name << " " << first_of(report);
     EXPECT_EQ(report.records, terrain.store().record_count());
   }
@@ -337,7 +337,7 @@ void damage_attribute(std::mt19937_64& random, VertexSplit& r, const VertexSplit
 
 /// Asks for refinements of many kinds; no sound store fails one.
 void expect_answers(const Terrain& tin, std::mt19937_64& random, std::size_t records) {
-  MovingWindow window = tin.moving_window();
+  MovingWindow window = tin.moving_window({});
   for (int i = 0; i < 8; ++i) {
     RefineRequest request;
     if (i == 0) {
@@ -362,7 +362,7 @@ RC_GTEST_PROP(HierarchyCheck, FindsWhateverAQuestionWouldFailOn, (std::uint64_t 
   if (!verify_store(file.path).is_sound()) return;
   const Terrain tin(file.open());
   // In few cells and in many it finds something or nothing.
-  const bool is_sound = tin.check_hierarchy().is_sound();
+  const bool is_sound = tin.check_hierarchy({}).is_sound();
   HierarchyRequest little;
   little.limits.memory_bytes = reference::least_memory([&](std::uint64_t bytes) {
     HierarchyRequest request;

@@ -15,8 +15,8 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/moving_window.h"
-#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/replaced_new.h"
 

@@ -15,9 +15,9 @@
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
 #include "engine/mesh/validate.h"
+#include "engine/query/questions.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/coarsest.h"
-#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/reference_hierarchy.h"

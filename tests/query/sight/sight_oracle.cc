@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "engine/construct/build.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 
 namespace ptin::reference {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/query/questions.h"
 #include "engine/query/sight/sight.h"
-#include "engine/query/terrain.h"
 #include "tests/query/line_oracle.h"
 
 namespace ptin::reference {

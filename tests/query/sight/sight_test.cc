@@ -99,7 +99,7 @@ RC_GTEST_PROP(Sight, AgreesWithEveryTriangleInRationals, (std::uint64_t seed)) {
     const SightCase asked = random_question(random, t);
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
-    const SightResult found = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult found = t.terrain->sight(asked.pair, asked.request);
     check_verdict(truth, found);
     check_measures(truth, found);
   }
@@ -166,7 +166,7 @@ RC_GTEST_PROP(Sight, IsNeverWrongWhenItStopsEarly, (std::uint64_t seed)) {
     if (!is_level || random() % 3 == 0) {
       asked.request.budget = random() % 60;
     }
-    const SightResult found = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult found = t.terrain->sight(asked.pair, asked.request);
     check_certificate(truth, found);
     if (found.exact) {
       check_verdict(truth, found);
@@ -182,9 +182,9 @@ RC_GTEST_PROP(Sight, OfAllVerticesIsExact, (std::uint64_t seed)) {
   std::mt19937_64 random(seed);
   const SmallTerrain t(seed);
   SightCase asked = random_question(random, t);
-  const SightResult exact = sight(*t.terrain, asked.pair, asked.request);
+  const SightResult exact = t.terrain->sight(asked.pair, asked.request);
   asked.request.detail.vertices = std::uint64_t{1} << 40;
-  const SightResult all = sight(*t.terrain, asked.pair, asked.request);
+  const SightResult all = t.terrain->sight(asked.pair, asked.request);
   RC_ASSERT(all.verdict == exact.verdict);
   RC_ASSERT(all.exact == exact.exact);
   RC_ASSERT(all.clearance_at.has_value() == exact.clearance_at.has_value());
@@ -203,14 +203,13 @@ RC_GTEST_PROP(Sight, IsNeverWrongOfAFileThatIsNotExact, (std::uint64_t seed)) {
     const TrueSight truth = true_sight(t, asked.p, asked.pair.height_a, asked.q,
                                        asked.pair.height_b, asked.request.absolute, asked.bend);
     asked.request.verdict_only = random() % 2 == 0;
-    check_certificate(truth, sight(*rough.terrain, asked.pair, asked.request));
+    check_certificate(truth, rough.terrain->sight(asked.pair, asked.request));
   }
 }
 
 /// The same question by splits.
-SightResult by_splits(const Terrain& t, const SightPair& pair, SightRequest request) {
-  request.by = AnswerBy::kSplits;
-  return sight(t, pair, request);
+SightResult by_splits(const Terrain& t, const SightPair& pair, const SightRequest& request) {
+  return t.sight(pair, request, AnswerBy::kSplits);
 }
 
 /// The same number, up to the last bits of what is weighed in another triangle beside an edge.
@@ -243,7 +242,7 @@ RC_GTEST_PROP(Sight, ByStarsIsBySplits, (std::uint64_t seed)) {
     SightCase asked = random_question(random, t);
     asked.request.wavelength = random() % 3 == 0 ? 1.0 : 0.0;
     asked.request.verdict_only = asked.request.wavelength == 0 && random() % 3 == 0;
-    const SightResult stars = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult stars = t.terrain->sight(asked.pair, asked.request);
     const SightResult splits = by_splits(*t.terrain, asked.pair, asked.request);
     RC_ASSERT(stars.cost.records_retrieved == 0u);
     RC_ASSERT(splits.cost.stars_read == 0u);
@@ -274,7 +273,7 @@ RC_GTEST_PROP(Sight, ByStarsAtALevelAgreesWithSplits, (std::uint64_t seed)) {
       asked.request.detail.vertices =
           store.t0().vertices.size() + random() % (store.record_count() + 2);
     }
-    const SightResult stars = sight(*t.terrain, asked.pair, asked.request);
+    const SightResult stars = t.terrain->sight(asked.pair, asked.request);
     const SightResult splits = by_splits(*t.terrain, asked.pair, asked.request);
     RC_ASSERT(stars.state_a == splits.state_a);
     RC_ASSERT(stars.state_b == splits.state_b);
@@ -306,8 +305,7 @@ TEST_P(SightByBothWays, IsTheSame) {
     SightRequest request;
     request.verdict_only = verdict_only;
     SightSolver stars(t, request, 300);
-    request.by = AnswerBy::kSplits;
-    SightSolver splits(t, request);
+    SightSolver splits = t.sight_lines(request, 0, AnswerBy::kSplits);
     for (const std::uint64_t i : test::some_of_first(400)) {
       const double height = static_cast<double>(random() % 5 * (random() % 3) * 20);
       const SightPair pair{place(), height, place(), height};
@@ -356,8 +354,7 @@ TEST_P(SightByBothWays, AtALevelStarsTellMore) {
     SightRequest request;
     request.detail.vertices = vertices;
     SightSolver by_stars(t, request, 0);
-    request.by = AnswerBy::kSplits;
-    SightSolver by_splits(t, request, 0);
+    SightSolver by_splits = t.sight_lines(request, 0, AnswerBy::kSplits);
     std::mt19937_64 random(vertices);
     SightWorth stars;
     SightWorth splits;

@@ -138,9 +138,8 @@ void check_all_ways(std::mt19937_64& random, const SmallTerrain& t, const Terrai
   const bool is_asked = asked.request.detail.tolerance || asked.request.detail.vertices;
   const bool is_rough = asked_of.store().facts().base_deviation > 0;
   const auto check = [&](AnswerBy by, std::uint64_t coarse_records) {
-    asked.request.by = by;
     const SightResult found =
-        SightSolver(asked_of, asked.request, coarse_records).solve(asked.pair);
+        asked_of.sight_lines(asked.request, coarse_records, by).solve(asked.pair);
     check_true(t, asked, truth, found);
     RC_ASSERT(found.exact || is_asked || is_rough || asked.request.budget);
     if (found.exact) {
@@ -182,9 +181,9 @@ RC_GTEST_PROP(SightTouch, StandsOnTheGroundUpright, (std::uint64_t seed)) {
     pair.height_b = pair.height_a + static_cast<double>(random() % 2);
     SightRequest request;
     request.absolute = true;
-    request.by = random() % 2 == 0 ? AnswerBy::kStars : AnswerBy::kSplits;
+    const AnswerBy by = random() % 2 == 0 ? AnswerBy::kStars : AnswerBy::kSplits;
     const bool is_below = Rational(pair.height_a) + *depth < 0;
-    RC_ASSERT(sight(*t.terrain, pair, request).verdict ==
+    RC_ASSERT(t.terrain->sight(pair, request, by).verdict ==
               (is_below ? SightVerdict::kHidden : SightVerdict::kVisible));
   }
 }

@@ -14,9 +14,9 @@
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "engine/query/questions.h"
 #include "engine/query/select/coarsest.h"
 #include "engine/query/sight/viewshed_walk.h"
-#include "engine/query/terrain.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/query/sight/sight_oracle.h"

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "engine/query/questions.h"
 #include "engine/query/stream/stream_writer.h"
-#include "engine/query/terrain.h"
 #include "tests/query/reference_hierarchy.h"
 
 namespace ptin::reference {

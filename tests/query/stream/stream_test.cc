@@ -13,9 +13,9 @@
 
 #include "engine/error.h"
 #include "engine/mesh/validate.h"
+#include "engine/query/questions.h"
 #include "engine/query/stream/stream_reader.h"
 #include "engine/query/stream/stream_writer.h"
-#include "engine/query/terrain.h"
 #include "tests/query/random_predicate.h"
 #include "tests/query/stream/sent_stream.h"
 

@@ -15,7 +15,7 @@
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/query/volume/volume_oracle.h"

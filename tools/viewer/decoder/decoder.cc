@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/terrain.h"
+#include "engine/query/questions.h"
 #include "tools/viewer/decoder/ground.h"
 #include "tools/viewer/decoder/module.h"
 

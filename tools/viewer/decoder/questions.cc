@@ -5,6 +5,8 @@
 // it. Answers are arrays of doubles, valid until the next question; src/questions.ts knows their order.
 //
 // Errors: what is refused leaves the module for good (module.h), and the host takes a new instance.
+#include "engine/query/questions.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,7 +16,6 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/query/terrain.h"
 #include "tools/viewer/decoder/ground.h"
 #include "tools/viewer/decoder/module.h"
 

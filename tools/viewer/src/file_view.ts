@@ -116,6 +116,7 @@ export class FileView implements TerrainView {
       try {
         more = this.still.apply(40);
       } catch (error) {
+        // What came whole before the damage is shown, though the damage was met before anything was.
         this.hasFailed = true;
         this.events.settled();
         throw error;

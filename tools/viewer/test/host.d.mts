@@ -3,8 +3,8 @@ import type { IncomingMessage, ServerResponse } from 'node:http';
 import type { Browser } from 'playwright-core';
 
 export interface HostOptions {
-  bytesPerSecond?: number;
+  portions?: number;
   answer?: (request: IncomingMessage, response: ServerResponse, path: string) => boolean;
 }
 export function launched(): Promise<Browser>;
-export function host(folder: string, options?: HostOptions): Promise<{ url: string; close(): Promise<void> }>;
+export function host(folder: string, options?: HostOptions): Promise<{ url: string; more(): void; close(): Promise<void> }>;

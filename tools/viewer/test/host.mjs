@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A web host of a folder for tests, without ranges, that can be slow; and a browser.
-import { createReadStream, statSync } from 'node:fs';
+// A web host of a folder for tests, without ranges, that can wait within a file; and a browser.
+import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize } from 'node:path';
 
@@ -16,32 +16,39 @@ export async function launched() {
 const types = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.wasm': 'application/wasm' };
 
 /**
- * Serves `folder` on a free port of the loopback. `bytesPerSecond`: of files whose name ends in .ptins; 0: as fast as it goes.
+ * Serves `folder` on a free port of the loopback.
+ * `portions`: files whose name ends in .ptins arrive in so many equal portions; each but the first waits for a call of `more()`.
  * `answer`: may answer a request itself, by returning true.
  */
-export async function host(folder, { bytesPerSecond = 0, answer = () => false } = {}) {
+export async function host(folder, { portions = 1, answer = () => false } = {}) {
+  const waiting = [];
+  const send = (response, bytes, left) => {
+    const size = Math.ceil(bytes.length / left);
+    response.write(bytes.subarray(0, size));
+    if (left === 1) response.end();
+    else waiting.push(() => { send(response, bytes.subarray(size), left - 1); });
+  };
   const server = createServer((request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
     if (answer(request, response, path)) return;
     const file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
     let bytes;
     try {
-      bytes = statSync(file).size;
+      bytes = readFileSync(file);
     } catch {
       response.writeHead(404).end('not here');
       return;
     }
-    response.writeHead(200, { 'Content-Type': types[extname(file)] ?? 'application/octet-stream', 'Content-Length': bytes });
-    const slow = bytesPerSecond > 0 && file.endsWith('.ptins');
-    const stream = createReadStream(file, slow ? { highWaterMark: Math.ceil(bytesPerSecond / 20) } : {});
-    if (slow) {
-      stream.on('data', () => { stream.pause(); setTimeout(() => stream.resume(), 50); });
-    }
-    stream.pipe(response);
+    response.writeHead(200, { 'Content-Type': types[extname(file)] ?? 'application/octet-stream', 'Content-Length': bytes.length });
+    send(response, bytes, file.endsWith('.ptins') ? portions : 1);
   });
   await new Promise((resolve) => { server.listen(0, '127.0.0.1', resolve); });
-  return { url: `http://127.0.0.1:${server.address().port}/`, close: () => new Promise((resolve) => {
-    server.closeAllConnections?.();
-    server.close(resolve);
-  }) };
+  return {
+    url: `http://127.0.0.1:${server.address().port}/`,
+    more: () => { for (const sendNext of waiting.splice(0)) sendNext(); },
+    close: () => new Promise((resolve) => {
+      server.closeAllConnections?.();
+      server.close(resolve);
+    }),
+  };
 }

@@ -30,11 +30,11 @@ declare global {
 
 type Host = Awaited<ReturnType<typeof host>>;
 
-/** The folder of a page with mountains, which `fast` gives out at once, `slow` in some seconds. */
+/** The folder of a page with mountains, which `fast` gives out at once, `portioned` in three portions. */
 export const site = file('site');
 export let store = '';
 export let fast: Host;
-export let slow: Host;
+export let portioned: Host;
 let browser: Browser;
 let kept: Page | null = null;
 let faults: string[] = [];
@@ -44,13 +44,13 @@ before(async () => {
   store = mountains.store;
   layOut(site, '--stream', mountains.stream);
   fast = await host(site);
-  slow = await host(site, { bytesPerSecond: 25000 });
+  portioned = await host(site, { portions: 3 });
   browser = await launched();
 });
 after(async () => {
   await browser?.close();
   await fast?.close();
-  await slow?.close();
+  await portioned?.close();
 });
 
 /** Writes the page into a folder, with the assets of today. */
@@ -90,15 +90,18 @@ export async function onPage(
 }
 
 async function newPage(screen: BrowserContextOptions): Promise<Page> {
-  const page = await (await browser.newContext(screen)).newPage();
+  const context = await browser.newContext(screen);
+  // What is waited for may take long: a processor draws, and shares itself with other tests.
+  context.setDefaultTimeout(240000);
+  const page = await context.newPage();
   page.on('console', (message) => { if (['error', 'warning'].includes(message.type())) faults.push(message.text()); });
   page.on('pageerror', (error) => { faults.push(error.message); });
   return page;
 }
 
 /** Waits until something holds on the page. A poll at each frame would keep the page at work. */
-export async function until(page: Page, holds: () => boolean): Promise<void> {
-  await page.waitForFunction(holds, null, { polling: 100, timeout: 60000 });
+export async function until(page: Page, holds: (given: number[]) => boolean, given: number[] = []): Promise<void> {
+  await page.waitForFunction(holds, given, { polling: 100 });
 }
 
 export async function complete(page: Page): Promise<void> {
@@ -106,16 +109,26 @@ export async function complete(page: Page): Promise<void> {
   await rested(page);
 }
 
-/** Waits until the picture is drawn and nothing more is asked for, 150 ms after the camera rests. Returns the number of pictures. */
+/** Waits until the picture is drawn and nothing more is asked for. Returns the number of pictures. */
 export async function rested(page: Page): Promise<number> {
   return page.evaluate(async () => {
     const { relief } = window.ptinViewer;
     for (let before = -1; before !== relief.pictures;) {
       before = relief.pictures;
-      await new Promise((resolve) => { setTimeout(resolve, 500); });
+      await new Promise((resolve) => { setTimeout(resolve, 700); });
     }
     return relief.pictures;
   });
+}
+
+/** The address of the page once its view rests. It is written some time after the last key. */
+export async function lastLink(page: Page): Promise<string> {
+  for (let before = '';;) {
+    await rested(page);
+    const link = page.url();
+    if (link === before) return link;
+    before = link;
+  }
 }
 
 /** How many colours the middle of the picture has. */

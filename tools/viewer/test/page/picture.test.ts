@@ -5,9 +5,8 @@ import assert from 'node:assert/strict';
 import { cpSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import type { Page } from 'playwright-core';
 import { gridded } from '../support';
-import { complete, fast, onPage, phone, quick, rested, site, text, until } from './browser';
+import { complete, fast, lastLink, onPage, phone, quick, rested, site, text, until } from './browser';
 
 test('triangles, isolines and colours change the picture', () => onPage(`${fast.url}#error=20`, async (page) => {
   await complete(page);
@@ -25,21 +24,17 @@ test('triangles, isolines and colours change the picture', () => onPage(`${fast.
 }));
 
 test('a link brings the same view', async () => {
-  const pose = (page: Page): number[] => new URLSearchParams(new URL(page.url()).hash.slice(1)).get('at')!.split(',').map(Number);
+  const numbers = (url: string): number[] => new URLSearchParams(new URL(url).hash.slice(1)).get('at')!.split(',').map(Number);
   let link = '';
-  let first: number[] = [];
   await onPage(`${fast.url}#error=20`, async (page) => {
     await complete(page);
     for (const key of ['ArrowUp', 'ArrowLeft', '+', '+', '.']) await page.keyboard.press(key);
-    await page.waitForTimeout(600);
-    link = page.url();
+    link = await lastLink(page);
     assert.match(link, /#at=/);
-    first = pose(page);
   });
   await onPage(link, async (page) => {
     await complete(page);
-    await page.waitForTimeout(500);
-    const second = pose(page);
+    const [first, second] = [numbers(link), numbers(await lastLink(page))];
     first.forEach((n, i) => { assert.ok(Math.abs(n - second[i]) <= 2e-3 * Math.abs(n), `${first} ${second}`); });
   });
 });
@@ -100,7 +95,7 @@ test('the camera stays above the ground', () => onPage(`${fast.url}#error=20`, a
   await page.mouse.up({ button: 'right' });
   await rested(page);
   assert.ok(await above() > 0);
-}));
+}, { screen: { ...quick, reducedMotion: 'no-preference' } }));
 
 test('keys tilt, leave no ring, and the pointer costs nothing while it moves', () => onPage(`${fast.url}#error=5`, async (page) => {
   await complete(page);

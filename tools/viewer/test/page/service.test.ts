@@ -113,7 +113,7 @@ test('after a service was away the page goes on by itself', () => served(`hills=
     await appears(page, '#trouble');
     assert.match(await text(page, '#certified-what'), /does not answer/);
     await served(`hills=${store}`, async () => {
-      await page.waitForSelector('#trouble[hidden]', { state: 'attached', timeout: 30000 });
+      await page.waitForSelector('#trouble[hidden]', { state: 'attached' });
       await complete(page);
       await page.mouse.click(640, 380);
       await appears(page, '#answer');

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/heights/region_border.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+
+#include "engine/geometry/affine_rounding.h"
+#include "engine/query/shape/clip.h"
+
+namespace ptin {
+
+namespace {
+
+/// How far beyond the domain a side of a window is taken as it is: what lies there meets no triangle,
+/// and rounding stays that of the domain's own coordinates.
+constexpr double kBeyond = 2.0;
+
+std::vector<std::vector<MapPoint>> rings_on_grid(const Region& region, const AffineMap& map,
+                                                 const GridBox& bounds) {
+  if (const auto* window = std::get_if<Window>(&region)) {
+    const GridWindow w = on_grid(*window, map);
+    const auto near = [](double v, std::int32_t low, std::int32_t high) {
+      return std::clamp(v, low - kBeyond, high + kBeyond);
+    };
+    const double min_x = near(w.min_x, bounds.min_x, bounds.max_x);
+    const double max_x = near(w.max_x, bounds.min_x, bounds.max_x);
+    const double min_y = near(w.min_y, bounds.min_y, bounds.max_y);
+    const double max_y = near(w.max_y, bounds.min_y, bounds.max_y);
+    return {std::vector<MapPoint>{{min_x, min_y}, {max_x, min_y}, {max_x, max_y}, {min_x, max_y}}};
+  }
+  std::vector<std::vector<MapPoint>> rings = std::get<Polygon>(region).rings;
+  for (std::vector<MapPoint>& ring : rings) {
+    for (MapPoint& p : ring) {
+      p = {snapped_to_grid(p.x, map.origin_x, map.step_x),
+           snapped_to_grid(p.y, map.origin_y, map.step_y)};
+    }
+  }
+  return rings;
+}
+
+MapPoint position_of(const ValuedPlace& c) { return {c[0], c[1]}; }
+
+/// A place of the triangle with its value.
+ValuedPlace valued(const std::array<ValuedPlace, 3>& triangle, MapPoint p) {
+  const MapPoint o = position_of(triangle[0]), b = position_of(triangle[1]),
+                 c = position_of(triangle[2]);
+  const double whole = cross(o, b, c);
+  const double of_b = cross(o, p, c) / whole, of_c = cross(o, b, p) / whole;
+  const auto [low, high] = std::minmax({triangle[0][2], triangle[1][2], triangle[2][2]});
+  const double value = triangle[0][2] + (of_b * (triangle[1][2] - triangle[0][2]) +
+                                         of_c * (triangle[2][2] - triangle[0][2]));
+  return {p.x, p.y, std::clamp(value, low, high)};
+}
+
+/// Where an edge crosses a side. From the edge's ends in an order of their own, so that both triangles
+/// at the edge give the same; on a side along an axis it has that side's coordinate, and an end of the
+/// edge that lies there is met as it is. So a side along a row of vertices gives these vertices.
+ValuedPlace crossing(const ValuedPlace& a, const ValuedPlace& b, const PolygonSides::Side& s) {
+  ValuedPlace place{};
+  if (s.low.x == s.high.x || s.low.y == s.high.y) {
+    const std::size_t axis = s.low.x == s.high.x ? 0 : 1;
+    const double at = axis == 0 ? s.low.x : s.low.y;
+    for (std::size_t k = 0; k < 3; ++k) place[k] = meet(a[axis], a[k], b[axis], b[k], at);
+    place[axis] = at;
+  } else {
+    const auto& [first, last] = std::minmax(a, b);
+    const double from = cross(s.low, s.high, position_of(first));
+    const double to = cross(s.low, s.high, position_of(last));
+    const double share = from == to ? 0.0 : std::clamp(from / (from - to), 0.0, 1.0);
+    for (std::size_t k = 0; k < 3; ++k) place[k] = first[k] + share * (last[k] - first[k]);
+  }
+  const auto [low, high] = std::minmax(a[2], b[2]);
+  place[2] = std::clamp(place[2], low, high);  // rounding must not raise it above both ends
+  return place;
+}
+
+}  // namespace
+
+RegionBorder::RegionBorder(const Region& region, const AffineMap& map, const GridBox& bounds)
+    : sides_(rings_on_grid(region, map, bounds)) {
+  const auto* window = std::get_if<Window>(&region);
+  if (window != nullptr && window->min_x == window->max_x && window->min_y == window->max_y) {
+    const MapPoint place = rings_on_grid(region, map, bounds).front().front();
+    place_ = PolygonSides::Side{place, place};
+  }
+}
+
+void RegionBorder::visit_shared(const std::array<ValuedPlace, 3>& triangle,
+                                std::vector<ValuedPlace>& ends) const {
+  const auto [min_x, max_x] = std::minmax({triangle[0][0], triangle[1][0], triangle[2][0]});
+  const auto [min_y, max_y] = std::minmax({triangle[0][1], triangle[1][1], triangle[2][1]});
+  sides_.visit_near({min_x, min_y, max_x, max_y},
+                    [&](const PolygonSides::Side& side) { add_shared(triangle, side, ends); });
+  if (place_) add_shared(triangle, *place_, ends);
+}
+
+void RegionBorder::add_shared(const std::array<ValuedPlace, 3>& triangle,
+                              const PolygonSides::Side& side,
+                              std::vector<ValuedPlace>& ends) const {
+  // Shares of the side, from its low end, and the edges at which they end; 3: the side's own end.
+  double from = 0.0, to = 1.0;
+  std::size_t from_edge = 3, to_edge = 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const MapPoint o = position_of(triangle[i]), d = position_of(triangle[(i + 1) % 3]);
+    const double slack = sides_.slack() * std::hypot(d.x - o.x, d.y - o.y);
+    const double low = cross(o, d, side.low), high = cross(o, d, side.high);
+    if (low < -slack && high < -slack) return;
+    if (low >= -slack && high >= -slack) continue;
+    const double share = low / (low - high);
+    if (low < high && share > from) {
+      from = share;
+      from_edge = i;
+    } else if (low > high && share < to) {
+      to = share;
+      to_edge = i;
+    }
+  }
+  if (from > to) {
+    // A side that passes a corner within rounding.
+    const double length = std::hypot(side.high.x - side.low.x, side.high.y - side.low.y);
+    if ((from - to) * length > sides_.slack()) return;
+  }
+  const auto end = [&](std::size_t edge, MapPoint own) {
+    return edge == 3 ? valued(triangle, own)
+                     : crossing(triangle[edge], triangle[(edge + 1) % 3], side);
+  };
+  ends.push_back(end(from_edge, side.low));
+  ends.push_back(end(to_edge, side.high));
+}
+
+}  // namespace ptin

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Who takes the triangles of a place: of a file (LivingReader), or of a mesh in a browser, which knows
+// no files.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/query/living/living_stars.h"
+#include "engine/query/living/living_triangle.h"
+
+namespace ptin {
+
+/// Takes the triangles of a place.
+class LivingVisitor {
+ public:
+  LivingVisitor() = default;
+  LivingVisitor(const LivingVisitor&) = delete;
+  LivingVisitor& operator=(const LivingVisitor&) = delete;
+  virtual ~LivingVisitor() = default;
+  /// Called once, before a page is read: about so many records are on the pages that will be. False
+  /// ends it.
+  virtual bool expect(std::uint64_t /*records*/) { return true; }
+  /// Called before the triangles of T0, and of each page: at most so many come, and those that the
+  /// level has not decided yet. False ends it.
+  virtual bool begin(std::size_t /*most_triangles*/) { return true; }
+  /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles
+  /// nothing more is asked yet. True: it took them; false: the triangles come one by one.
+  virtual bool take_stars(const LivingStars& /*stars*/) { return false; }
+  virtual void take(const LivingTriangle& t) = 0;
+};
+
+}  // namespace ptin

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/raster/pixel_sampler.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "engine/geometry/orient.h"
+#include "engine/query/living/spot_in_triangle.h"
+
+namespace ptin {
+
+namespace {
+
+/// Whether a triangle holds no other position of the grid than its corners: when it is half a
+/// square unit, by Pick's theorem.
+bool is_smallest(const LivingTriangle& t) {
+  return orient(t.corner[0].position, t.corner[1].position, t.corner[2].position) == 1;
+}
+
+/// The weights of the corners at a spot of the triangle's box, where 64 bits hold them: sides of
+/// 2^18 grid units make products of 2^58.
+std::array<Int128, 3> short_weights(const LivingTriangle& t, Spot q) {
+  const auto weight = [q](GridPoint a, GridPoint b) {
+    const Spot from = spot_of(a);
+    return Int128{(std::int64_t{b.x} - a.x) * (q.y - from.y) -
+                  (std::int64_t{b.y} - a.y) * (q.x - from.x)};
+  };
+  return {weight(t.corner[1].position, t.corner[2].position),
+          weight(t.corner[2].position, t.corner[0].position),
+          weight(t.corner[0].position, t.corner[1].position)};
+}
+
+bool is_short(const GridBox& box) {
+  constexpr std::int32_t kShort = 1 << 18;
+  return box.max_x - box.min_x <= kShort && box.max_y - box.min_y <= kShort;
+}
+
+bool all_above(const std::array<Int128, 3>& weights) {
+  return weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0;
+}
+
+/// Calls found(place, spot, weights) for each centre in the closed triangle.
+template <class Found>
+void for_centres_in(const PixelCentres& centres, const LivingTriangle& t, const Found& found) {
+  const GridBox box = box_of(t);
+  if (centres.misses(box)) return;
+  const bool has_short_sides = is_short(box);
+  centres.near(t.corner[0].position, t.corner[1].position, t.corner[2].position,
+               [&](std::size_t place, Spot q) {
+                 const auto weights = has_short_sides ? short_weights(t, q) : weights_of(t, q);
+                 if (all_above(weights)) found(place, q, weights);
+               });
+}
+
+}  // namespace
+
+template <class Height>
+PixelSampler<Height>::PixelSampler(const StoreFacts& facts, const PixelCentres& centres,
+                                   PixelBuffers<Height> buffers)
+    : encoding_(facts.heights), centres_(centres), buffers_(buffers) {
+  std::fill(buffers.heights.begin(), buffers.heights.end(),
+            std::numeric_limits<Height>::quiet_NaN());
+  std::fill(buffers.states.begin(), buffers.states.end(), PointState::kOutside);
+  std::fill(buffers.labels.begin(), buffers.labels.end(), kNone);
+}
+
+template <class Height>
+void PixelSampler<Height>::set_height(std::size_t place, double height, std::uint32_t label) {
+  buffers_.heights[place] = static_cast<Height>(height);
+  if (!buffers_.states.empty()) buffers_.states[place] = PointState::kSurface;
+  if (!buffers_.labels.empty()) buffers_.labels[place] = label;
+}
+
+template <class Height>
+void PixelSampler<Height>::add(const LivingTriangle& t, std::uint32_t label) {
+  if (t.is_void) {
+    if (!buffers_.states.empty()) add_void(t);
+    return;
+  }
+  if (centres_.are_grid_positions()) {
+    add_corners(t, label);
+    if (is_smallest(t)) return;
+  }
+  for_centres_in(centres_, t, [&](std::size_t place, Spot q, const std::array<Int128, 3>& weights) {
+    if (is_set(place)) return;  // another triangle gives the same height
+    const double code = codes_in(t, encoding_, q, weights).mean();
+    set_height(place, encoding_.height_of_code(code), label);
+  });
+}
+
+template <class Height>
+void PixelSampler<Height>::add(const Tin& tin, TriangleId t, std::uint32_t label) {
+  LivingTriangle triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexId v = tin.triangles[t].v[i];
+    triangle.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
+  }
+  triangle.is_void = tin.classes[t] == TriangleClass::kVoid;
+  add(triangle, label);
+}
+
+template <class Height>
+void PixelSampler<Height>::add_void(const LivingTriangle& t) {
+  for_centres_in(centres_, t, [&](std::size_t place, Spot, const std::array<Int128, 3>&) {
+    if (buffers_.states[place] == PointState::kOutside) buffers_.states[place] = PointState::kVoid;
+  });
+}
+
+/// Sets the heights of the corners.
+template <class Height>
+void PixelSampler<Height>::add_corners(const LivingTriangle& t, std::uint32_t label) {
+  for (const LivingTriangle::Corner& c : t.corner) {
+    const std::size_t place = centres_.place_of(c.position);
+    if (place != PixelCentres::kNowhere && !is_set(place)) {
+      set_height(place, encoding_.height(c.height), label);
+    }
+  }
+}
+
+template class PixelSampler<float>;
+template class PixelSampler<double>;
+
+}  // namespace ptin
