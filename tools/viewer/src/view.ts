@@ -128,10 +128,20 @@ export class View {
     this.controls.enableDamping = !this.still.matches;
     const moved = this.controls.update();
     if (this.frame !== null) {
+      this.stayWithin();
       this.stayAbove(this.frame, groundAt);
       this.clip(this.frame);
     }
     return moved;
+  }
+
+  /**
+   * Keeps the camera off its nearest and its farthest by more than a rounding. The controls find a distance that is beyond these by a
+   * rounding changed each time, so that the picture would be drawn for ever.
+   */
+  private stayWithin(): void {
+    const { minDistance, maxDistance, target } = this.controls;
+    this.camera.position.sub(target).clampLength(minDistance * (1 + 1e-9), maxDistance * (1 - 1e-9)).add(target);
   }
 
   /** Lifts the camera out of the ground, and over the lowest ground beside the terrain and in voids. */
