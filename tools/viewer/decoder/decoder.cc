@@ -5,6 +5,7 @@
 //
 // Errors: what is refused leaves the module for good (module.h). After that the host reads what is there (src/decoder.ts says
 // what) and feeds nothing more; a new stream gets a new instance.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,8 +16,6 @@
 #include "tools/viewer/decoder/module.h"
 
 namespace {
-
-using ptin::viewer::PlainFacts;
 
 /// What 32 bits of address leave for the mesh and a frame, beside the allocator's own.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{3} << 30;
@@ -35,6 +34,7 @@ std::vector<std::byte>& input() {
 
 /// Valid until the next call of feed().
 const ptin::Tin& ptin::viewer::tin() { return reader().tin(); }
+const ptin::StoreFacts& ptin::viewer::facts() { return reader().facts(); }
 
 /// Room for the bytes that are fed next. Valid until the next call.
 PTIN_EXPORT(room) std::byte* room(std::size_t bytes) {
@@ -68,10 +68,27 @@ PTIN_EXPORT(reliefDeviation) double relief_deviation() {
   return ptin::certificate_by_relief(reader().facts()).deviation;
 }
 
-PTIN_EXPORT(facts) const PlainFacts* facts() {
-  static PlainFacts plain;
-  plain = ptin::viewer::plain(reader().facts());
-  return &plain;
+/// Facts in the order in which src/decoder.ts reads them. Valid until the next call.
+PTIN_EXPORT(facts) const double* facts() {
+  static std::array<double, 15> numbers;
+  const ptin::StoreFacts& f = reader().facts();
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  numbers = {f.map.origin_x,
+             f.map.origin_y,
+             f.map.step_x,
+             f.map.step_y,
+             number(f.heights.type == ptin::HeightType::float32),
+             f.heights.step,
+             f.heights.offset,
+             number(f.bounds.min_x),
+             number(f.bounds.min_y),
+             number(f.bounds.max_x),
+             number(f.bounds.max_y),
+             f.min_height,
+             f.max_height,
+             f.base_error,
+             f.base_deviation};
+  return numbers.data();
 }
 PTIN_EXPORT(metadata) const char* metadata() { return reader().metadata().data(); }
 PTIN_EXPORT(metadataBytes) std::size_t metadata_bytes() { return reader().metadata().size(); }

@@ -6,7 +6,7 @@ import type { Window } from './map_window';
 import { type MeshExports, type MeshView, meshIn } from './mesh';
 import { type DecodeError, type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
 
-/** PlainFacts (decoder/module.h), in its order. */
+/** In the order of the module's facts (decoder/decoder.cc). */
 const factNames = [
   'originX', 'originY', 'stepX', 'stepY', 'heightIsFloat', 'heightStep', 'heightOffset', 'minX', 'minY', 'maxX', 'maxY',
   'minHeight', 'maxHeight', 'baseError', 'baseDeviation',
@@ -107,11 +107,8 @@ export class Decoder {
     return { error: this.wasm.reliefError(), deviation: this.wasm.reliefDeviation() };
   }
 
-  /** The facts as both modules have them. */
-  get plainFacts(): Float64Array { return numbersAt(this.wasm.memory, this.wasm.facts(), factNames.length); }
-
   get facts(): Facts {
-    const numbers = this.plainFacts;
+    const numbers = numbersAt(this.wasm.memory, this.wasm.facts(), factNames.length);
     return Object.fromEntries(factNames.map((name, i) => [name, numbers[i]])) as Facts;
   }
 

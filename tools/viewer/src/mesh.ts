@@ -16,6 +16,8 @@ export interface MeshExports extends ModuleExports {
   triangleCount(): number;
   triangles(): number;
   classes(): number;
+  storeFacts(): number;
+  storeFactsBytes(): number;
 }
 
 /** The mesh where it lies in the memory of an instance: valid until the instance takes more. */
@@ -29,6 +31,8 @@ export interface MeshView {
   triangles: Uint32Array;
   /** 1: void. */
   classes: Uint8Array;
+  /** The engine's facts of the terrain (storage/store_facts.h), which nobody reads here. */
+  facts: Uint8Array;
 }
 
 export function meshIn(wasm: MeshExports): MeshView {
@@ -40,5 +44,6 @@ export function meshIn(wasm: MeshExports): MeshView {
     hasHeight: new Uint8Array(buffer, wasm.hasHeight(), vertexCount),
     triangles: new Uint32Array(buffer, wasm.triangles(), triangleCount * triangleWords),
     classes: new Uint8Array(buffer, wasm.classes(), triangleCount),
+    facts: new Uint8Array(buffer, wasm.storeFacts(), wasm.storeFactsBytes()),
   };
 }

@@ -22,7 +22,6 @@ export interface Asked {
 
 interface Exports extends MeshExports {
   makeRoom(vertices: number, triangles: number): void;
-  facts(): number;
   describe(freeOfVoids: number, error: number, deviation: number, isWhole: number): void;
   locate(x: number, y: number): number;
   profile(ax: number, ay: number, bx: number, by: number): number;
@@ -69,12 +68,12 @@ export class Questions {
   /** A line of sight over the mesh: heights above ground, in the height's unit. */
   sight(asked: Asked, a: MapPosition, heightA: number, b: MapPosition, heightB: number, hertz: number): Sight {
     return this.ask(asked, (wasm) => {
-      const n = numbersAt(wasm.memory, wasm.sight(a.x, a.y, heightA, b.x, b.y, heightB, hertz), 17);
+      const n = numbersAt(wasm.memory, wasm.sight(a.x, a.y, heightA, b.x, b.y, heightB, hertz), 13);
       const point = (i: number): SightPoint => ({ x: n[i], y: n[i + 1], distance: n[i + 2], height: n[i + 3] });
       return {
         verdict: verdicts[n[0]], length: n[1],
-        clearance: Number.isNaN(n[9]) ? null : { min: n[2], max: n[3], at: point(5) },
-        fresnel: Number.isNaN(n[4]) ? null : { ratio: n[4], at: point(13) },
+        clearance: Number.isNaN(n[5]) ? null : { min: n[2], max: n[3], at: point(5) },
+        fresnel: Number.isNaN(n[4]) ? null : { ratio: n[4], at: point(9) },
       };
     });
   }
@@ -100,9 +99,7 @@ export class Questions {
     const { mesh } = decoder;
     wasm.makeRoom(mesh.vertexCount, mesh.triangleCount);
     const copy = meshIn(wasm);
-    for (const part of ['vertices', 'hasHeight', 'triangles', 'classes'] as const) copy[part].set(mesh[part]);
-    const facts = decoder.plainFacts;
-    new Float64Array(wasm.memory.buffer, wasm.facts(), facts.length).set(facts);
+    for (const part of ['vertices', 'hasHeight', 'triangles', 'classes', 'facts'] as const) copy[part].set(mesh[part]);
     this.copied = decoder.version;
   }
 }

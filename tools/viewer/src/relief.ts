@@ -10,9 +10,7 @@ import type { DrawnMesh } from './drawn_mesh';
 import { GroundBelow } from './ground_below';
 import type { Frame } from './frame';
 import { heightStops, rampTexture, slopeStops } from './ramps';
-import {
-  lineFragment, lineVertex, markFragment, markVertex, placeFragment, reliefFragment, reliefVertex, ribbonVertex,
-} from './shaders';
+import { lineFragment, lineVertex, markFragment, placeFragment, reliefFragment, reliefVertex, ribbonVertex } from './shaders';
 
 export type Shading = 'height' | 'slope' | 'shade';
 
@@ -139,7 +137,6 @@ export class Relief {
   /** Heights between isolines, in the height's unit; 0: none. */
   set isolines(interval: number) {
     this.intervalHeight = interval;
-    this.placeIsolines();
     this.draw();
   }
 
@@ -236,13 +233,10 @@ export class Relief {
   }
 
   addMark(place: Place, colour: string, size = 13): void {
-    const material = new ShaderMaterial({
-      vertexShader: markVertex, fragmentShader: markFragment, transparent: true, depthTest: false,
-      uniforms: {
-        exaggeration: this.exaggeration, size: { value: size * Math.min(devicePixelRatio, 2) },
-        colour: { value: pageColour(colour) },
-      },
-    });
+    const material = this.lineMaterial(pageColour(colour), 1, 0.005);
+    material.fragmentShader = markFragment;
+    material.depthTest = false;
+    material.uniforms.size.value = size * Math.min(devicePixelRatio, 2);
     this.addObject(new Points(geometryOf([place]), material), 3);
   }
 
@@ -287,6 +281,7 @@ export class Relief {
       vertexShader: lineVertex, fragmentShader: lineFragment, transparent: true, depthWrite: false,
       uniforms: {
         exaggeration: this.exaggeration, colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift },
+        size: { value: 0 },
       },
     });
   }

@@ -76,11 +76,13 @@ void main() {
   gl_FragColor = vec4(mix(colour, haze, 0.75 * far), 1.0);
 }`;
 
-/** Edges and marks: the same exaggeration, one colour. */
+/** Edges, bodies and marks: the same exaggeration. */
 export const lineVertex = /* glsl */ `
 uniform float exaggeration;
 uniform float lift;
+uniform float size;    // of marks on the screen
 void main() {
+  gl_PointSize = size;
   vec4 seen = modelViewMatrix * vec4(position.xy, position.z * exaggeration, 1.0);
   seen.xyz *= 1.0 - lift;
   gl_Position = projectionMatrix * seen;
@@ -110,17 +112,6 @@ void main() {
   vec2 across = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(0.0);
   here.xy += across * turn * width * here.w / picture;
   gl_Position = here;
-}`;
-
-/** Marks of one size on the screen. */
-export const markVertex = /* glsl */ `
-uniform float exaggeration;
-uniform float size;
-void main() {
-  vec4 seen = modelViewMatrix * vec4(position.xy, position.z * exaggeration, 1.0);
-  seen.xyz *= 0.995;
-  gl_Position = projectionMatrix * seen;
-  gl_PointSize = size;
 }`;
 
 export const markFragment = /* glsl */ `

@@ -36,9 +36,7 @@ export class View {
     this.controls = new MapControls(camera, canvas);
     this.controls.dampingFactor = 0.12;
     this.controls.zoomToCursor = true;
-    this.controls.screenSpacePanning = false;
     this.controls.maxPolarAngle = 1.5;
-    this.controls.keyPanSpeed = 40;
   }
 
   /** How many times as high as it is the terrain is drawn. What is looked at stays in the middle. */

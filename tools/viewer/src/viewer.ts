@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import { type Certified, certifiedWithin } from './certified';
+import { certifiedWithin } from './certified';
 import type { Certificate } from './decoder';
 import { scaleAt } from './earth';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
@@ -9,7 +9,7 @@ import { Frame } from './frame';
 import { Inquiry } from './inquiry';
 import { holds } from './map_window';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
-import { colour, part, speak, toast, trouble } from './page';
+import { colour, part, speak, toast } from './page';
 import { Panel } from './panel';
 import { type Settings, fromHash, toHash } from './permalink';
 import { Relief } from './relief';
@@ -21,6 +21,8 @@ interface Boot {
   early: FromWorker[];
   /** Has the Worker open a terrain. */
   open(source: Source): void;
+  /** Says what went wrong. `aside`: there is a terrain, which stays in sight. */
+  trouble(title: string, message: string, aside: boolean): void;
 }
 
 /** Pixels by which a picture of a service's terrain may be off. */
@@ -42,9 +44,8 @@ class Viewer {
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
-  private certified: Certified | null = null;
 
-  constructor(boot: Boot) {
+  constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
     this.worker = boot.worker!;
     this.isServed = boot.source?.kind === 'collection';
@@ -84,10 +85,8 @@ class Viewer {
         this.isTroubled = false;
         break;
       case 'error':
-        trouble(message.title, message.message, this.frame !== null);
+        this.boot.trouble(message.title, message.message, this.frame !== null);
         this.isTroubled = true;
-        part('progress').classList.add('done');
-        if (this.frame === null) part('subtitle').textContent = 'Nothing is shown';
         break;
     }
   }
@@ -110,8 +109,7 @@ class Viewer {
   }
 
   private show(status: Status): void {
-    this.certified = status.certified;
-    this.status = { ...status, certificate: this.certificate };
+    this.status = { ...status, certificate: this.inSight(status) };
     this.showCertificate();
     if (status.state !== this.spokenState && status.state !== 'loading') {
       performance.mark('ptin-settled');
@@ -121,17 +119,18 @@ class Viewer {
   }
 
   /** The certificate of all that is in sight; before there is a terrain, of nothing. */
-  private get certificate(): Certificate {
-    const { certified, frame } = this;
-    if (certified === null || frame === null) return { error: Infinity, deviation: Infinity };
-    return certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
+  private inSight({ certified }: Status): Certificate {
+    const { frame } = this;
+    return frame === null ? { error: Infinity, deviation: Infinity }
+      : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
   }
 
   private showCertificate(): void {
-    const { status, certified, frame } = this;
-    if (status === null || certified === null || frame === null) return;
-    const isEverywhere = certified.parts.some((part) => holds(part.window, frame.bounds) && part.error <= status.certificate.error);
-    this.panel.showStatus(status, status.certificate, isEverywhere);
+    const { status, frame } = this;
+    if (status === null || frame === null) return;
+    const { certificate, certified } = status;
+    const isEverywhere = certified.parts.some((part) => holds(part.window, frame.bounds) && part.error <= certificate.error);
+    this.panel.showStatus(status, certificate, isEverywhere);
   }
 
   /** Carries a setting out. */
@@ -155,10 +154,9 @@ class Viewer {
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
     if (this.status !== null) {
-      const { error, deviation } = this.certificate;
-      const before = this.status.certificate;
-      this.status.certificate = { error, deviation };
-      if (error !== before.error || deviation !== before.deviation) this.showCertificate();
+      const { error, deviation } = this.status.certificate;
+      const now = this.status.certificate = this.inSight(this.status);
+      if (now.error !== error || now.deviation !== deviation) this.showCertificate();
     }
     return moves;
   }
@@ -213,7 +211,7 @@ class Viewer {
     dark.addEventListener('change', recolour);
     recolour();
     canvas.addEventListener('webglcontextlost', () => {
-      trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
+      this.boot.trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
     });
     addEventListener('hashchange', () => {
       const { pose } = fromHash(location.hash);
@@ -351,7 +349,7 @@ function start(boot: Boot): void {
   try {
     (window as unknown as { ptinViewer: Viewer }).ptinViewer = new Viewer(boot);
   } catch (error) {
-    trouble('The picture cannot be drawn', `The viewer needs WebGL 2, which this browser does not give. (${(error as Error).message})`, false);
+    boot.trouble('The picture cannot be drawn', `The viewer needs WebGL 2, which this browser does not give. (${(error as Error).message})`, false);
   }
 }
 

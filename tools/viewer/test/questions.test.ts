@@ -124,6 +124,7 @@ for (const [name, of] of terrains) {
       const request = { observerHeight: 40 * t.frame.scaleZ, targetHeight: 60 * t.frame.scaleZ, frequency: 450e6 };
       const profile = { ...questions.profile(asked, a, b), lengths: t.earth.lengths };
       const drawn = drawnSight({ request, sight: here, profile }, t.frame);
+      assert.ok(here.clearance !== null || here.verdict !== 'visible', 'a visible line has a clearance');
       if (here.clearance !== null) {
         const { distance, height } = here.clearance.at;
         assert.ok(Math.abs(drawn.at(distance / here.length) - height) < 1e-3, `${drawn.at(distance / here.length)} for ${height}`);
