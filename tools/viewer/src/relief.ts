@@ -38,8 +38,6 @@ export class Relief {
   private readonly pickTarget = new WebGLRenderTarget(1, 1, {
     type: FloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter,
   });
-  /** Shared by all materials: one value for the whole scene. */
-  private readonly exaggeration = { value: 1 };
   private readonly material: ShaderMaterial;
   private readonly pickMaterial: ShaderMaterial;
   private readonly edgeMaterial: ShaderMaterial;
@@ -57,21 +55,18 @@ export class Relief {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.camera.up.set(0, 0, 1);
-    const { exaggeration } = this;
     this.material = new ShaderMaterial({
       vertexShader: reliefVertex, fragmentShader: reliefFragment, side: DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
       uniforms: {
-        exaggeration, shading: { value: 0 }, ramp: { value: rampTexture(heightStops) },
+        exaggeration: { value: 1 }, shading: { value: 0 }, ramp: { value: rampTexture(heightStops) },
         slopeRamp: { value: rampTexture(slopeStops) }, rampRange: { value: [0, 1] }, sun: { value: new Vector3(0, 0, 1) },
         haze: { value: new Color() }, hazeDistance: { value: 1 }, interval: { value: 0 }, intervalPhase: { value: 0 },
         isolineColour: { value: new Color(0.16, 0.1, 0.06) }, drape: { value: null },
         drapeWindow: { value: new Vector4(0, 0, 0, 0) },
       },
     });
-    this.pickMaterial = new ShaderMaterial({
-      vertexShader: reliefVertex, fragmentShader: placeFragment, side: DoubleSide, uniforms: { exaggeration },
-    });
+    this.pickMaterial = new ShaderMaterial({ vertexShader: reliefVertex, fragmentShader: placeFragment, side: DoubleSide });
     this.edgeMaterial = this.lineMaterial(new Color(0x0d1b2a), 0.24, 0);
     this.mesh = new Mesh(this.geometry, this.material);
     this.edges = new LineSegments(this.edgeGeometry, this.edgeMaterial);
@@ -123,7 +118,7 @@ export class Relief {
   }
 
   set verticalScale(factor: number) {
-    this.exaggeration.value = factor;
+    this.scene.scale.z = this.material.uniforms.exaggeration.value = factor;
     this.draw();
   }
 
@@ -279,10 +274,7 @@ export class Relief {
   private lineMaterial(colour: Color, opacity: number, lift: number): ShaderMaterial {
     return new ShaderMaterial({
       vertexShader: lineVertex, fragmentShader: lineFragment, transparent: true, depthWrite: false,
-      uniforms: {
-        exaggeration: this.exaggeration, colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift },
-        size: { value: 0 },
-      },
+      uniforms: { colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift }, size: { value: 0 } },
     });
   }
 }
