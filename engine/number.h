@@ -35,11 +35,14 @@ template <class T>
   if constexpr (std::is_floating_point_v<T>) {
     if (fault == std::errc::result_out_of_range) {
       // A wider type still shows which of both it is; where even that is too narrow, the exponent
-      // does.
+      // does, or the digits before the point.
       number = number.substr(0, static_cast<std::size_t>(end - number.data()));
       constexpr auto kTooLarge = std::numeric_limits<long double>::infinity();
-      const bool is_tiny = number.find_first_of("eE") != std::string_view::npos &&
-                           number[number.find_first_of("eE") + 1] == '-';
+      const std::size_t exponent = number.find_first_of("eE");
+      const bool is_tiny =
+          exponent == std::string_view::npos
+              ? number.substr(0, number.find('.')).find_first_not_of("-0") == std::string_view::npos
+              : number[exponent + 1] == '-';
       long double wide = is_tiny ? 0.0L : number.starts_with('-') ? -kTooLarge : kTooLarge;
       std::from_chars(number.data(), end, wide);
       text.remove_prefix(static_cast<std::size_t>(end - text.data()));

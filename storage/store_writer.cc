@@ -204,21 +204,20 @@ void StoreWriterImpl::start(const HeightEncoding& heights) {
 void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEncoding& heights) {
   PTIN_CHECK(!published_ &&
              segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
-  std::uint64_t records = 0;
   for (std::size_t i = 0; i < segment.descriptors.size(); ++i) {
     const auto page =
         std::span(segment.pages).subspan(i * options_.page_bytes, options_.page_bytes);
     PTIN_CHECK(checksum_of(page) == segment.descriptors[i].checksum);
-    records += segment.descriptors[i].records;
   }
-  PTIN_CHECK(records == records_in(segment.errors));
   start(heights);
   file_.write_at(segment.pages, written_bytes_);
   add_placed(segment, heights);
 }
 
 void StoreWriterImpl::add_placed(const PackedSegment& segment, const HeightEncoding& heights) {
-  PTIN_CHECK(!published_);
+  std::uint64_t records = 0;
+  for (const layout::NodeEntry& entry : segment.descriptors) records += entry.records;
+  PTIN_CHECK(!published_ && records == records_in(segment.errors));
   start(heights);
   for (const layout::NodeEntry& entry : segment.descriptors) {
     index_->add(entry);
@@ -282,8 +281,15 @@ void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEnco
   start(heights);
   restore_moved_pages();
   std::vector<std::byte> page(options_.page_bytes);
-  journal_->replay(checkpoint.pages, checkpoint.chain,
-                   [&](const layout::NodeEntry& entry) { take_back(entry, page); });
+  std::uint64_t records = 0;
+  journal_->replay(checkpoint.pages, checkpoint.chain, [&](const layout::NodeEntry& entry) {
+    take_back(entry, page);
+    records += entry.records;
+  });
+  if (records != records_in(checkpoint.errors)) {
+    throw Error(ErrorCode::corruption,
+                "the counts of the unfinished build are not those of its pages", path_);
+  }
   count(checkpoint.errors, checkpoint.max_rank);
   // The journal is synced before the pages are cut. Otherwise a power cut could bring back a mark
   // of publishing that speaks of copies which were cut off.

@@ -7,19 +7,13 @@
 /// Libraries that keep what they allocate once until the process ends.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() {
-  return "leak:libproj.so\nleak:libgdal.so\nleak:libtbb.so\nleak:libfontconfig.so\n"
+  return "leak:libproj.so\nleak:libgdal.so\nleak:libfontconfig.so\n"
          "leak:SpatialIndex::RTree::ExternalSorter\n";  // forgets a record at the end of a run
 }
 
 extern "C" const char* __ubsan_default_options();
 extern "C" const char* __ubsan_default_options() { return "print_stacktrace=1"; }
 
-/// GDAL and oneTBB are not instrumented.
+/// GDAL is not instrumented.
 extern "C" const char* __tsan_default_options();
 extern "C" const char* __tsan_default_options() { return "ignore_noninstrumented_modules=1"; }
-
-/// oneTBB establishes order inside its library, where the thread sanitizer does not see it.
-extern "C" const char* __tsan_default_suppressions();
-extern "C" const char* __tsan_default_suppressions() {
-  return "race:tbb::detail\nrace:task_ptr_or_nullptr\n";
-}

@@ -125,11 +125,7 @@ void remove_done(Workspace& workspace, Job& job) {
   }
 }
 
-Error no_threads_or(bool no_threads, const std::string& what) {
-  if (no_threads) {
-    return {ErrorCode::resource_exhausted,
-            "the system gives no more threads; give fewer --threads, or close other programs"};
-  }
+Error unexpected(const std::string& what) {
   return {ErrorCode::internal, "something else than an error of ours was thrown: " + what};
 }
 
@@ -146,11 +142,11 @@ Error error_in_flight() {
   } catch (const std::filesystem::filesystem_error& e) {
     return system_error(e.code().value(), "the file system refused", e.path1().string());
   } catch (const std::system_error& e) {
-    return no_threads_or(e.code() == std::errc::resource_unavailable_try_again, e.what());
+    if (e.code() != std::errc::resource_unavailable_try_again) return unexpected(e.what());
+    return {ErrorCode::resource_exhausted,
+            "the system gives no more threads; give fewer --threads, or close other programs"};
   } catch (const std::exception& e) {
-    // oneTBB has no type of its own for a thread that it cannot start.
-    return no_threads_or(
-        std::string_view(e.what()).find("pthread_create") != std::string_view::npos, e.what());
+    return unexpected(e.what());
   } catch (...) {
     return {ErrorCode::internal,
             "something was thrown that is no exception of the standard library"};
@@ -191,8 +187,9 @@ RunTasks Job::run_tasks() const {
     // No tile is in work yet: what is left for tiles is there for these tasks.
     const std::uint64_t fit =
         memory.for_tiles(anonymous_bytes_now(), wanted) / std::max<std::uint64_t>(tasks.bytes(), 1);
-    const int threads =
-        static_cast<int>(std::clamp<std::uint64_t>(fit, 1, static_cast<std::uint64_t>(wanted)));
+    const std::uint64_t most =
+        std::clamp<std::uint64_t>(tasks.left(), 1, static_cast<std::uint64_t>(wanted));
+    const int threads = static_cast<int>(std::clamp<std::uint64_t>(fit, 1, most));
     tasks.set_bytes(memory.sorting / static_cast<std::uint64_t>(threads));
     tasks.tell([this](const StageProgress& progress) { tell(progress); });
     TaskDriver here;

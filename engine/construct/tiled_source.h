@@ -30,7 +30,7 @@ struct TiledSource {
   TerrainFrame frame;
   MeasureUnits units;
   TileTree tree;
-  std::function<LeafStarter()> make_starter;  ///< Called once for each thread.
+  std::function<LeafStarter()> make_starter;  ///< Called once for each task that runs at once.
 };
 
 /// @param source  Must outlive the result.

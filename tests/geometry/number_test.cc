@@ -42,7 +42,8 @@ TEST(ParseNumber, RoundsWhatNoDoubleHasToInfinityOrNothing) {
     EXPECT_EQ(parse_number<double>("-" + text), -kTooLarge) << text;
   }
   for (const std::string& text :
-       {std::string("1e-999"), std::string("1E-99999"), "0." + std::string(400, '0') + "1"}) {
+       {std::string("1e-999"), std::string("1E-99999"), "0." + std::string(400, '0') + "1",
+        "-0." + std::string(9000, '0') + "1"}) {
     EXPECT_EQ(parse_number<double>(text), 0.0) << text;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Uses the geometry room alone: no GDAL, CGAL or TBB is linked.
+// Uses the geometry room alone: no GDAL or CGAL is linked.
 #include <engine/error.h>
 #include <engine/geometry/orient.h>
 

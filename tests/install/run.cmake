@@ -44,7 +44,7 @@ run(${SCRATCH}/build/ptin_geometry_user)
 run(${SCRATCH}/build/readme_program ${SCRATCH}/hill.ptin)
 
 set(without "")
-foreach(package IN ITEMS CGAL CURL EXPAT GDAL TBB)
+foreach(package IN ITEMS CGAL CURL EXPAT GDAL)
   list(APPEND without -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 build(${SOURCE}/query ${SCRATCH}/query_build ${without})

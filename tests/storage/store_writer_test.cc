@@ -343,6 +343,14 @@ TEST_F(StoreWriterResume, IsItselfResumedAfterAPowerCut) {
   EXPECT_TRUE(read_file(path_) == written_in_one_go());
 }
 
+TEST_F(StoreWriterResume, RefusesCountsThatAreNotThoseOfItsPages) {
+  StoreCheckpoint checkpoint = publish_but_for_the_name();
+  ++checkpoint.errors.front().records;
+  EXPECT_EQ(
+      code_of([&] { writer(FileLayer::system())->resume(checkpoint, content_.facts.heights); }),
+      ErrorCode::corruption);
+}
+
 TEST_F(StoreWriterResume, GoesOnAfterEachCallThatCanFail) {
   const Bytes expected = written_in_one_go();
   bool failed = true;

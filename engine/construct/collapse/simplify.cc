@@ -29,12 +29,12 @@
 #include <vector>
 
 #include "engine/check.h"
+#include "engine/construct/collapse/carried_samples.h"
 #include "engine/construct/collapse/collapse_choice.h"
 #include "engine/construct/collapse/collapse_queue.h"
 #include "engine/construct/collapse/grid_stars.h"
 #include "engine/construct/collapse/record_maker.h"
 #include "engine/construct/collapse/tile_compact.h"
-#include "engine/construct/collapse/witness.h"
 #include "engine/construct/measure/saturation.h"
 #include "engine/large_array.h"
 #include "engine/prefetch.h"
@@ -245,8 +245,8 @@ std::size_t Simplifier::most_samples() const {
   if (!is_capped_) {
     return kAllSamples;
   }
-  return std::clamp(first_samples_ / static_cast<std::size_t>(2 * alive_ + 1), kWitnessesInWork,
-                    kMostWitnessesInWork);
+  return std::clamp(first_samples_ / static_cast<std::size_t>(2 * alive_ + 1), kCarriedInWork,
+                    kMostCarriedInWork);
 }
 
 void Simplifier::compact_when_sparse() {
@@ -408,7 +408,7 @@ void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& option
   Simplifier(tile, &full, options).run();
 }
 
-void simplify_witnesses(Tile& tile, const SimplifyOptions& options) {
+void simplify_carried_samples(Tile& tile, const SimplifyOptions& options) {
   Simplifier(tile, nullptr, options).run();
 }
 

@@ -48,6 +48,6 @@ void simplify(Tile& tile, const FullSurface& full, const SimplifyOptions& option
 /// The same for a tile that holds carried samples instead of all. The `error` of a record is its
 /// own part alone, measured over these, and its `deviation` is 0. Tightening does the rest
 /// (construct/hierarchy/tighten.h).
-void simplify_witnesses(Tile& tile, const SimplifyOptions& options);
+void simplify_carried_samples(Tile& tile, const SimplifyOptions& options);
 
 }  // namespace ptin

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "engine/construct/collapse/witness.h"
+#include "engine/construct/collapse/carried_samples.h"
 
 namespace ptin {
 
@@ -33,7 +33,7 @@ void close_gaps_of_samples(Tile& tile, std::size_t most) {
     if (slot.count > most) {
       const std::span<Sample> all = tile.samples.samples(slot);
       chosen.assign(all.begin(), all.end());
-      choose_witnesses(tile, t, chosen, most);
+      choose_carried_samples(tile, t, chosen, most);
       std::copy(chosen.begin(), chosen.end(), all.begin());
       slot.count = static_cast<std::uint32_t>(chosen.size());
     }

@@ -71,7 +71,8 @@ std::string height_unit_of_prj(GDALDataset& data) {
   for (int i = 0; i < lines.size(); ++i) {
     const CPLStringList words(CSLTokenizeString2(lines[i], " \t", 0));
     if (words.size() > 1 && EQUAL(words[0], "Zunits") && !EQUAL(words[1], "NO")) {
-      const bool is_number = parse_number<double>(words[1]).value_or(0.0) != 0.0;
+      std::string_view beginning = words[1];
+      const bool is_number = take_number<double>(beginning).value_or(0.0) != 0.0;
       return is_number ? std::string("Zunits ") + words[1] : std::string(words[1]);
     }
   }
@@ -84,7 +85,8 @@ void warn_of_shift(const std::string& text, const std::string& path, SourceWarni
   const std::size_t begin = text.find_first_not_of(", ", comma);
   const std::string number =
       begin == std::string::npos ? "" : text.substr(begin, text.find(']', begin) - begin);
-  if (parse_number<double>(number).value_or(0.0) != 0.0) {
+  std::string_view beginning = number;  // WKT 2 has a unit behind it
+  if (take_number<double>(beginning).value_or(0.0) != 0.0) {
     warnings.add({"crs_vertical_shift",
                   "its vertical CRS shifts heights by " + number +
                       " (Vertical_Shift), which is not applied: heights are taken as they are, in "

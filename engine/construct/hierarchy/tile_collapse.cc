@@ -69,7 +69,7 @@ CollapsedGroup collapse_group(const TileId& id, const TileTree& tree,
   const std::size_t foreign = tile.records.size();
   simplify(tile, full, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
   CollapsedGroup result;
-  PushedTile pushed = push_up(std::move(tile), PushedSamples::kWitnesses);
+  PushedTile pushed = push_up(std::move(tile), PushedSamples::kCarried);
   result.records = starred_records(std::move(pushed.records), foreign, std::move(pushed.stars));
   result.pushed = std::move(pushed.tile);
   return result;
@@ -87,8 +87,8 @@ CollapsedInner collapse_inner(const TileId& id, const TileTree& tree, std::vecto
     }
   }
   Tile tile = join_tiles(std::move(parts), tree, id);
-  simplify_witnesses(tile, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
-  PushedTile pushed = push_up(std::move(tile), PushedSamples::kWitnesses);
+  simplify_carried_samples(tile, simplify_options(options, vertices_to_keep(tile, tree, id), stop));
+  PushedTile pushed = push_up(std::move(tile), PushedSamples::kCarried);
   pushed.records.erase(
       pushed.records.begin(),
       pushed.records.begin() + static_cast<std::ptrdiff_t>(segment.foreign.size()));

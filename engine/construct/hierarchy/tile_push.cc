@@ -30,7 +30,7 @@
 #include <utility>
 
 #include "engine/check.h"
-#include "engine/construct/collapse/witness.h"
+#include "engine/construct/collapse/carried_samples.h"
 #include "engine/mesh/compact.h"
 #include "engine/mesh/link.h"
 
@@ -85,11 +85,11 @@ void keep_all_samples(const Tile& from, TriangleId t, CarriedState& state, Tile&
   std::copy(samples.begin(), samples.end(), to.samples.samples(state.samples).begin());
 }
 
-void keep_witnesses(const Tile& from, TriangleId t, std::vector<Sample>& scratch,
-                    CarriedState& state, Tile& to) {
+void keep_carried_samples(const Tile& from, TriangleId t, std::vector<Sample>& scratch,
+                          CarriedState& state, Tile& to) {
   const auto samples = from.samples.samples(from.carried[t].samples);
   scratch.assign(samples.begin(), samples.end());
-  choose_witnesses(from, t, scratch);
+  choose_carried_samples(from, t, scratch);
   state.samples = to.samples.take(static_cast<std::uint32_t>(scratch.size()));
   std::copy(scratch.begin(), scratch.end(), to.samples.samples(state.samples).begin());
   state.holds_heights = state.holds_voids = false;
@@ -192,7 +192,7 @@ PushedTile push_up(Tile&& tile, PushedSamples samples) {
     if (samples == PushedSamples::kAll) {
       keep_all_samples(tile, t, state, to);
     } else {
-      keep_witnesses(tile, t, scratch, state, to);
+      keep_carried_samples(tile, t, scratch, state, to);
     }
     to.carried.push_back(state);
   }

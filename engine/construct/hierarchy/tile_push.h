@@ -24,8 +24,8 @@ struct PushedTile {
 
 /// The samples that a parent is given to measure by.
 enum class PushedSamples {
-  kAll,        ///< Every sample: the parent certifies its records itself.
-  kWitnesses,  ///< A few of each triangle (construct/collapse/witness.h): tightening certifies.
+  kAll,      ///< Every sample: the parent certifies its records itself.
+  kCarried,  ///< A few of each triangle (construct/collapse/carried_samples.h): tightening certifies.
 };
 
 /// Cuts a finished tile down to what is pushed. Vertices and triangles keep their order.

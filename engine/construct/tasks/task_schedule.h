@@ -68,6 +68,7 @@ class TaskList final : public TaskSchedule {
   /// Those that are known and those that were done since.
   [[nodiscard]] const TaskResults& results() const noexcept { return results_; }
   [[nodiscard]] bool is_complete() const noexcept { return left_.empty(); }
+  [[nodiscard]] std::size_t left() const noexcept { return left_.size(); }
 
  private:
   [[nodiscard]] std::optional<Task> task_of(const TaskName& name) const;

@@ -79,10 +79,13 @@ ValuedPlace crossing(const ValuedPlace& a, const ValuedPlace& b, const PolygonSi
 }  // namespace
 
 RegionBorder::RegionBorder(const Region& region, const AffineMap& map, const GridBox& bounds)
-    : sides_(rings_on_grid(region, map, bounds)) {
-  const auto* window = std::get_if<Window>(&region);
-  if (window != nullptr && window->min_x == window->max_x && window->min_y == window->max_y) {
-    const MapPoint place = rings_on_grid(region, map, bounds).front().front();
+    : RegionBorder(rings_on_grid(region, map, bounds)) {}
+
+RegionBorder::RegionBorder(const std::vector<std::vector<MapPoint>>& rings) : sides_(rings) {
+  // Sides that are shorter than rounding are none: the grid decides, not the numbers of the map.
+  const MapPoint place = rings.front().front();
+  const auto is_there = [&](MapPoint p) { return p.x == place.x && p.y == place.y; };
+  if (std::all_of(rings.front().begin(), rings.front().end(), is_there)) {
     place_ = PolygonSides::Side{place, place};
   }
 }

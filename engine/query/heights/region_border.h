@@ -35,11 +35,13 @@ class RegionBorder {
                     std::vector<ValuedPlace>& ends) const;
 
  private:
+  /// @param rings  On the grid.
+  explicit RegionBorder(const std::vector<std::vector<MapPoint>>& rings);
   void add_shared(const std::array<ValuedPlace, 3>& triangle, const PolygonSides::Side& side,
                   std::vector<ValuedPlace>& ends) const;
 
   PolygonSides sides_;
-  std::optional<PolygonSides::Side> place_;  ///< Of a window that is a single place, without sides.
+  std::optional<PolygonSides::Side> place_;  ///< Of a region that is a single place, without sides.
 };
 
 }  // namespace ptin

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,12 @@ void check(const OpenedTerrain& terrain, const RasterRequest& request) {
   if (p.width < 1 || p.height < 1 || p.width > kMostSide || p.height > kMostSide) {
     refuse("the raster has " + std::to_string(p.width) + " x " + std::to_string(p.height) +
                " pixels: give from 1 to 2^31 - 1 columns and rows",
+           terrain);
+  }
+  constexpr std::int64_t kMostIndex = std::int64_t{1} << 53;  // beyond it centres fall together
+  if (std::max(p.column, p.row) > kMostIndex || std::min(p.column, p.row) < -kMostIndex) {
+    refuse("the raster begins at column " + std::to_string(p.column) + " and row " +
+               std::to_string(p.row) + ": give numbers from -2^53 to 2^53",
            terrain);
   }
   if (request.block_width < 1 || request.block_height < 1) {
@@ -158,16 +165,22 @@ PixelRect RasterReading::pixels_of(const PixelRect& blocks) const {
 }
 
 std::uint64_t RasterReading::bytes_of(const PixelRect& pixels) const {
-  return static_cast<std::uint64_t>(pixels.pixels()) *
-         ((asks_surface() ? sizeof(double) : 0) + (request_.states ? sizeof(PointState) : 0) +
-          (request_.normals ? sizeof(GridNormal) : 0));
+  const std::uint64_t bytes_of_pixel = (asks_surface() ? sizeof(double) : 0) +
+                                       (request_.states ? sizeof(PointState) : 0) +
+                                       (request_.normals ? sizeof(GridNormal) : 0);
+  // There may be 2^62 pixels. What is beyond all memory stays so when it is doubled.
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max() / 2;
+  const auto count = static_cast<std::uint64_t>(pixels.pixels());
+  return count > kMost / std::max<std::uint64_t>(bytes_of_pixel, 1) ? kMost
+                                                                    : count * bytes_of_pixel;
 }
 
 /// Samples a rectangle of blocks together, unless the memory does not hold it.
 bool RasterReading::hand_over(const PixelRect& blocks, const RasterReceiver& receive) {
   const PixelRect pixels = pixels_of(blocks);
+  context_.hold(0);
   if (blocks.pixels() > 1 && !context_.fits(2 * bytes_of(pixels))) return false;
-  context_.admit(bytes_of(pixels));
+  context_.hold(bytes_of(pixels));
   const auto count = static_cast<std::size_t>(pixels.pixels());
   if (asks_surface()) {
     heights_.resize(count);
@@ -314,7 +327,7 @@ bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
   const PixelCentres centres(facts_, request_.lattice, part);
   if (!meets(centres.box(), facts_.bounds)) return true;
   PixelNormals normals(facts_, centres);
-  Gathering gathering(*this, normals, context_.left_beside(bytes_of(sampled)));
+  Gathering gathering(*this, normals, context_.left_beside(0));
   LivingPlace place;
   place.box = centres.box();
   if (!reader_.read(place, context_, gathering)) {

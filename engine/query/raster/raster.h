@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The terrain at the centres of pixels: heights, what the centres lie on, normals of the surface. Rasters larger than memory are handed over block by block.
+// The terrain at the centres of pixels: heights, what the centres lie on, normals of the surface.
+// Rasters larger than memory are handed over block by block.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,7 @@ class OpenedTerrain;
 
 struct RasterRequest {
   PixelLattice lattice;  ///< Where centres stand.
-  PixelRect pixels;      ///< Which pixels are wanted. Columns and rows may be negative.
+  PixelRect pixels;      ///< Which pixels are wanted. Columns and rows from -2^53 to 2^53.
   DetailRequest detail;  ///< The TIN that is looked at; the same for every part of a raster.
   /// Instead of `detail`: the finest TIN that has about as many vertices in the window as there are
   /// pixels (detail_for()). Another window, or another number of pixels, may get another TIN.
@@ -69,8 +70,8 @@ struct RasterResult {
 /// ends, and one on the border of a void has a height. Full detail at the positions of a raster's
 /// samples gives these samples.
 /// @throws Error invalid_argument    a step of 0; numbers that are not finite; no pixel, or more than
-///                                   2^31 - 1 columns or rows; blocks without pixels; both
-///                                   `as_fine_as_pixels` and a detail; as Detail
+///                                   2^31 - 1 columns or rows, or some beyond 2^53; blocks without
+///                                   pixels; both `as_fine_as_pixels` and a detail; as Detail
 ///               resource_exhausted  a block does not fit the memory, or the normals'
 ///                                   triangles of a single pixel not beside it
 ///               corruption, io_error, cancelled; what the receiver throws

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/select/accounting.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "engine/error.h"
 
 namespace ptin {
@@ -30,6 +33,7 @@ void QueryContext::throw_exhausted(std::uint64_t bytes) const {
     return b < (16 << 20) ? std::to_string((b + 0x3FF) >> 10) + " KiB"
                           : std::to_string((b + 0xFFFFF) >> 20) + " MiB";
   };
+  bytes += std::min(held_, std::numeric_limits<std::uint64_t>::max() - bytes);
   const bool reads_alike = size(bytes) == size(limits_.memory_bytes);
   const auto told = [&](std::uint64_t b) {
     return reads_alike ? std::to_string(b) + " bytes" : size(b);

@@ -50,14 +50,23 @@ class QueryContext {
   /// @throws Error resource_exhausted when `bytes` exceeds the limit; names both figures and
   /// `export`.
   void admit(std::uint64_t bytes) const {
-    if (bytes > limits_.memory_bytes) [[unlikely]] {
+    if (!fits(bytes)) [[unlikely]] {
       throw_exhausted(bytes);
     }
   }
 
+  /// From now on the query holds so many bytes besides what admit() is told, in the place of those
+  /// that it was told to hold before.
+  /// @throws Error as admit()
+  void hold(std::uint64_t bytes) {
+    held_ = 0;
+    admit(bytes);
+    held_ = bytes;
+  }
+
   /// Whether admit() would let so many bytes in.
   [[nodiscard]] bool fits(std::uint64_t bytes) const noexcept {
-    return bytes <= limits_.memory_bytes;
+    return bytes <= limits_.memory_bytes - held_;
   }
 
   /// What the limit leaves beside `bytes` that the query holds: the limit for a part of the query
@@ -65,7 +74,7 @@ class QueryContext {
   /// @throws Error as admit()
   [[nodiscard]] std::uint64_t left_beside(std::uint64_t bytes) const {
     admit(bytes);
-    return limits_.memory_bytes - bytes;
+    return limits_.memory_bytes - held_ - bytes;
   }
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
@@ -77,6 +86,7 @@ class QueryContext {
   [[noreturn]] void throw_exhausted(std::uint64_t bytes) const;
 
   QueryLimits limits_;
+  std::uint64_t held_ = 0;  ///< At most the limit.
   std::string file_;
 };
 

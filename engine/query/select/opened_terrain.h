@@ -38,7 +38,8 @@ class OpenedTerrain {
   [[nodiscard]] RecordSource record_source() const noexcept { return {*store_, index()}; }
 
   /// Uses `index` instead of the packed R-tree, for tests and `--index spatialindex`; the answers
-  /// are the same. Null: the packed R-tree again. Not thread-safe.
+  /// are the same. Terrain's questions go by it; free functions that look up stars do not. Null: the
+  /// packed R-tree again. Not thread-safe.
   void use_index(std::shared_ptr<const RecordIndex> index);
 
  private:

@@ -227,7 +227,18 @@ TEST(Highest, OfAWindowThatIsOnePlaceIsTheHeightThere) {
   const HighestResult got = highest(terrain, request);
   ASSERT_EQ(got.state, PointState::kSurface);
   const MapPoint points[] = {p};
-  EXPECT_NEAR(got.point.height, terrain.locate(points, {}).points[0].height, 1e-9);
+  const double height = terrain.locate(points, {}).points[0].height;
+  EXPECT_NEAR(got.point.height, height, 1e-9);
+
+  // So is one whose sides are shorter than coordinates are told apart, and a polygon of that size.
+  const MapPoint q{std::nextafter(p.x, HUGE_VAL), std::nextafter(p.y, HUGE_VAL)};
+  for (const Region& region :
+       {Region(Window{p.x, p.y, q.x, q.y}), Region(Polygon{{{p, {q.x, p.y}, q, {p.x, q.y}}}})}) {
+    request.region = region;
+    const HighestResult small = highest(terrain, request);
+    ASSERT_EQ(small.state, PointState::kSurface);
+    EXPECT_NEAR(small.point.height, height, 1e-9);
+  }
 }
 
 TEST(Highest, OfAPlaceWithoutInsideIsRefused) {

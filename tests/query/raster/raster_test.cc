@@ -357,6 +357,8 @@ TEST(Raster, RefusesWhatMeansNothing) {
   refused("not a finite number", [](Request& r) { r.lattice.origin.x = HUGE_VAL; });
   refused("0 x 30 pixels", [](Request& r) { r.pixels.width = 0; });
   refused("from 1 to 2^31 - 1", [](Request& r) { r.pixels.height = std::int64_t{1} << 31; });
+  refused("from -2^53 to 2^53", [](Request& r) { r.pixels.column = INT64_MAX; });
+  refused("from -2^53 to 2^53", [](Request& r) { r.pixels.row = INT64_MIN; });
   refused("sides of at least 1", [](Request& r) { r.block_width = 0; });
   refused("margin", [](Request& r) { r.lattice.margin.y = -1; });
   refused("ask for one", [](Request& r) { r.as_fine_as_pixels = true, r.detail.vertices = 100; });
@@ -364,6 +366,29 @@ TEST(Raster, RefusesWhatMeansNothing) {
   refused(
       "more than the limit", [](Request& r) { r.limits.memory_bytes = 1000; },
       ErrorCode::resource_exhausted);
+}
+
+TEST(Raster, OfAnySizeIsHandedOverInBlocks) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  // Sizes whose bytes, and twice these, are small numbers when they wrap around.
+  for (const std::int64_t height : {std::int64_t{1} << 30, std::int64_t{1'908'874'354}}) {
+    RasterRequest request = whole_request(terrain, 1);
+    request.pixels.width = std::int64_t{1} << 30;
+    request.pixels.height = height;
+    request.states = height != std::int64_t{1} << 30;
+    std::stop_source stop;
+    request.limits.stop = stop.get_token();
+    const auto first = [&](const RasterBlock& block) {
+      EXPECT_EQ(block.pixels.pixels(), request.block_width * request.block_height);
+      stop.request_stop();
+    };
+    try {
+      static_cast<void>(terrain.raster(request, first));
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::cancelled) << e.what();
+    }
+  }
 }
 
 TEST(Raster, LiesOutsideWhereNoTerrainCanBe) {

@@ -220,7 +220,7 @@ std::vector<Declaration> of_las_keys() {
       of_las_records("las.vertical_in_words", {zone},
                      {las_keys({kModel, kZone11, {4097, 34737, 7, 0}}), {34737, "NAVD88|"}}),
       of_las_records("las.vertical_shift", {{2112, shifted_heights("0.0")}},
-                     {{2112, shifted_heights("-3.5")}}),
+                     {{2112, shifted_heights("-3.5 ")}}),
   };
 }
 

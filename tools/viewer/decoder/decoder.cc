@@ -5,6 +5,7 @@
 //
 // Errors: what is refused leaves the module for good (module.h). After that the host reads what is there (src/decoder.ts says
 // what) and feeds nothing more; a new stream gets a new instance.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,8 +16,6 @@
 #include "tools/viewer/decoder/module.h"
 
 namespace {
-
-using ptin::viewer::PlainFacts;
 
 /// What 32 bits of address leave for the mesh and a frame, beside the allocator's own.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{3} << 30;
@@ -32,6 +31,10 @@ std::vector<std::byte>& input() {
 }
 
 }  // namespace
+
+/// Valid until the next call of feed().
+const ptin::Tin& ptin::viewer::tin() { return reader().tin(); }
+const ptin::StoreFacts& ptin::viewer::facts() { return reader().facts(); }
 
 /// Room for the bytes that are fed next. Valid until the next call.
 PTIN_EXPORT(room) std::byte* room(std::size_t bytes) {
@@ -53,7 +56,6 @@ PTIN_EXPORT(splits) double splits() { return static_cast<double>(reader().splits
 PTIN_EXPORT(splitsInAll) double splits_in_all() {
   return static_cast<double>(reader().splits_in_all());
 }
-PTIN_EXPORT(bytesUsed) double bytes_used() { return static_cast<double>(reader().bytes_used()); }
 PTIN_EXPORT(certifiedError) double certified_error() { return reader().certificate().error; }
 PTIN_EXPORT(certifiedDeviation) double certified_deviation() {
   return reader().certificate().deviation;
@@ -66,20 +68,27 @@ PTIN_EXPORT(reliefDeviation) double relief_deviation() {
   return ptin::certificate_by_relief(reader().facts()).deviation;
 }
 
-/// The mesh, as engine/mesh/tin.h has it in memory. Valid until the next call of feed().
-PTIN_EXPORT(vertexCount) std::size_t vertex_count() { return reader().tin().vertices.size(); }
-PTIN_EXPORT(vertices) const ptin::Vertex* vertices() { return reader().tin().vertices.data(); }
-PTIN_EXPORT(hasHeight) const std::uint8_t* has_height() { return reader().tin().has_height.data(); }
-PTIN_EXPORT(triangleCount) std::size_t triangle_count() { return reader().tin().triangles.size(); }
-PTIN_EXPORT(triangles) const ptin::Triangle* triangles() { return reader().tin().triangles.data(); }
-PTIN_EXPORT(classes) const ptin::TriangleClass* classes() { return reader().tin().classes.data(); }
-static_assert(sizeof(ptin::Vertex) == 16 && offsetof(ptin::Vertex, height) == 8 &&
-              sizeof(ptin::Triangle) == 24 && sizeof(ptin::TriangleClass) == 1);
-
-PTIN_EXPORT(facts) const PlainFacts* facts() {
-  static PlainFacts plain;
-  plain = ptin::viewer::plain(reader().facts());
-  return &plain;
+/// Facts in the order in which src/decoder.ts reads them. Valid until the next call.
+PTIN_EXPORT(facts) const double* facts() {
+  static std::array<double, 15> numbers;
+  const ptin::StoreFacts& f = reader().facts();
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  numbers = {f.map.origin_x,
+             f.map.origin_y,
+             f.map.step_x,
+             f.map.step_y,
+             number(f.heights.type == ptin::HeightType::float32),
+             f.heights.step,
+             f.heights.offset,
+             number(f.bounds.min_x),
+             number(f.bounds.min_y),
+             number(f.bounds.max_x),
+             number(f.bounds.max_y),
+             f.min_height,
+             f.max_height,
+             f.base_error,
+             f.base_deviation};
+  return numbers.data();
 }
 PTIN_EXPORT(metadata) const char* metadata() { return reader().metadata().data(); }
 PTIN_EXPORT(metadataBytes) std::size_t metadata_bytes() { return reader().metadata().size(); }
@@ -97,4 +106,15 @@ PTIN_EXPORT(metresPerMapUnit) const ptin::MapPoint* metres_per_map_unit(double x
   const ptin::MapPoint per_unit = on.per_map_unit({x, y});
   metres = {per_unit.x * on.metres_per_height, per_unit.y * on.metres_per_height};
   return &metres;
+}
+
+/// What lines of sight are drawn with, in the unit of heights: how much lower what lies at distance 1 looks, and how far light
+/// goes in a second.
+PTIN_EXPORT(curvature) double curvature() {
+  ptin::Curvature curvature;
+  curvature.earth_diameter = ptin::viewer::ground().earth_diameter;
+  return curvature.drop_at(1.0);
+}
+PTIN_EXPORT(lightSpeed) double light_speed() {
+  return ptin::viewer::kSpeedOfLight / ptin::viewer::ground().metres_per_height;
 }

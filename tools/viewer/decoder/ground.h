@@ -12,4 +12,6 @@ namespace ptin::viewer {
 /// longitude is not a number.
 [[nodiscard]] Ground ground();
 
+inline constexpr double kSpeedOfLight = 299792458.0;  ///< Metres a second.
+
 }  // namespace ptin::viewer

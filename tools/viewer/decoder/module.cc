@@ -45,6 +45,20 @@ std::uintptr_t __stack_chk_guard = 0x5dec0de5;
 }
 // NOLINTEND(bugprone-reserved-identifier)
 
+/// The mesh and its facts. src/mesh.ts reads them, and src/questions.ts fills those of the questions.
+PTIN_EXPORT(vertexCount) std::size_t vertex_count() { return ptin::viewer::tin().vertices.size(); }
+PTIN_EXPORT(vertices) const void* vertices() { return ptin::viewer::tin().vertices.data(); }
+PTIN_EXPORT(hasHeight) const void* has_height() { return ptin::viewer::tin().has_height.data(); }
+PTIN_EXPORT(triangleCount) std::size_t triangle_count() {
+  return ptin::viewer::tin().triangles.size();
+}
+PTIN_EXPORT(triangles) const void* triangles() { return ptin::viewer::tin().triangles.data(); }
+PTIN_EXPORT(classes) const void* classes() { return ptin::viewer::tin().classes.data(); }
+PTIN_EXPORT(storeFacts) const void* store_facts() { return &ptin::viewer::facts(); }
+PTIN_EXPORT(storeFactsBytes) std::size_t store_facts_bytes() { return sizeof(ptin::StoreFacts); }
+static_assert(sizeof(ptin::Vertex) == 16 && offsetof(ptin::Vertex, height) == 8 &&
+              sizeof(ptin::Triangle) == 24 && sizeof(ptin::TriangleClass) == 1);
+
 void* operator new(std::size_t bytes) {
   if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
   fail(ptin::ErrorCode::resource_exhausted,

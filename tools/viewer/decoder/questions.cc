@@ -23,16 +23,13 @@ namespace {
 
 using ptin::MapPoint;
 using ptin::viewer::ground;
-using ptin::viewer::PlainFacts;
 
 constexpr std::uint64_t kAnswerBytes = std::uint64_t{256} << 20;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSpeedOfLight = 299792458.0;  // metres a second
 
 /// The mesh that is asked, as the decoder had it, and what the host knows of it.
 struct Asked {
   ptin::Tin tin;
-  PlainFacts plain{};
   ptin::StoreFacts facts;
   ptin::Certificate certificate;
 };
@@ -65,7 +62,10 @@ void add(const std::optional<ptin::SightPoint>& point) {
 
 }  // namespace
 
-/// Room for a mesh, which the host fills: the arrays of engine/mesh/tin.h, and the facts. Valid until the next call.
+const ptin::Tin& ptin::viewer::tin() { return asked().tin; }
+const ptin::StoreFacts& ptin::viewer::facts() { return asked().facts; }
+
+/// Room for a mesh, which the host fills: the arrays of engine/mesh/tin.h. Valid until the next call.
 PTIN_EXPORT(makeRoom) void make_room(std::size_t vertices, std::size_t triangles) {
   ptin::Tin& tin = asked().tin;
   tin = {};  // The mesh before is not copied along.
@@ -74,18 +74,12 @@ PTIN_EXPORT(makeRoom) void make_room(std::size_t vertices, std::size_t triangles
   tin.triangles.resize(triangles);
   tin.classes.resize(triangles);
 }
-PTIN_EXPORT(vertices) ptin::Vertex* vertices() { return asked().tin.vertices.data(); }
-PTIN_EXPORT(hasHeight) std::uint8_t* has_height() { return asked().tin.has_height.data(); }
-PTIN_EXPORT(triangles) ptin::Triangle* triangles() { return asked().tin.triangles.data(); }
-PTIN_EXPORT(classes) ptin::TriangleClass* classes() { return asked().tin.classes.data(); }
-PTIN_EXPORT(facts) PlainFacts* facts() { return &asked().plain; }
 
-/// Takes over the facts that were filled in, and the certificate of the stream at the places that are asked next: infinity where
+/// Takes what the metadata tell of voids, and the certificate of the stream at the places that are asked next: infinity where
 /// it has none. `is_whole`: no record of the file is missing there.
 PTIN_EXPORT(describe)
 void describe(bool free_of_voids, double error, double deviation, bool is_whole) {
   Asked& now = asked();
-  now.facts = ptin::viewer::facts_of(now.plain);
   now.facts.free_of_voids = free_of_voids;
   const ptin::Certificate relief = ptin::certificate_by_relief(now.facts);
   now.certificate = {std::min(error, relief.error), std::min(deviation, relief.deviation),
@@ -120,8 +114,8 @@ PTIN_EXPORT(profile) const double* profile(double ax, double ay, double bx, doub
   return answer().data();
 }
 
-/// Verdict (as SightVerdict), length, clearance from and to, Fresnel ratio, and of clearance, obstruction and Fresnel zone: x, y,
-/// distance, height. Lengths are in the unit of heights; not a number: there is none.
+/// Verdict (as SightVerdict), length, clearance from and to, Fresnel ratio, and of clearance and Fresnel zone: x, y, distance,
+/// height. Lengths are in the unit of heights; not a number: there is none.
 PTIN_EXPORT(sight)
 const double* sight(double ax, double ay, double height_a, double bx, double by, double height_b,
                     double hertz) {
@@ -129,13 +123,12 @@ const double* sight(double ax, double ay, double height_a, double bx, double by,
   ptin::SightRequest request;
   request.curvature.earth_diameter = on.earth_diameter;
   request.ground_distance = on.distance;
-  if (hertz > 0) request.wavelength = kSpeedOfLight / hertz / on.metres_per_height;
+  if (hertz > 0) request.wavelength = ptin::viewer::kSpeedOfLight / hertz / on.metres_per_height;
   const ptin::SightResult r =
       ptin::sight_on(mesh(), {{ax, ay}, height_a, {bx, by}, height_b}, request);
   answer() = {static_cast<double>(r.verdict), r.length, r.clearance_min, r.clearance_max,
               r.fresnel_ratio.value_or(kUnknown)};
   add(r.clearance_at);
-  add(r.obstruction);
   add(r.fresnel_at);
   return answer().data();
 }

@@ -68,14 +68,3 @@ export interface Sight {
   /** Least clearance in radii of the first Fresnel zone; null without a frequency, or where it is not known. */
   fresnel: { ratio: number; at: SightPoint } | null;
 }
-
-/** A gap is a point without a height; one at the end tells nothing. */
-export function stationsOf(points: ReadonlyArray<MapPosition & { distance: number; height: number | null; state: PointState }>): Station[] {
-  const stations: Station[] = [];
-  for (const { distance, x, y, height, state } of points) {
-    if (height !== null) stations.push({ distance, x, y, height });
-    if (state !== 'surface') stations.push({ distance, x, y, height: null });
-  }
-  while (stations.length !== 0 && stations[stations.length - 1].height === null) stations.pop();
-  return stations;
-}

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The certificate of all that is in sight: certificates of streams hold in the windows that were asked for.
+import type { MapPosition } from './answers';
 import type { Certificate } from './decoder';
+import { type Window, holds, windowAround } from './map_window';
 
-export type Window = readonly [number, number, number, number];
-
-/** A certificate that holds within a window of the map, closed. */
+/** A certificate that holds within a window of the map. */
 export interface CertifiedPart extends Certificate {
   window: Window;
 }
@@ -15,10 +15,6 @@ export interface Certified {
   parts: CertifiedPart[];
   /** The certificate of the whole terrain. */
   otherwise: Certificate;
-}
-
-function holds(outer: Window, inner: Window): boolean {
-  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] >= inner[2] && outer[3] >= inner[3];
 }
 
 function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): number[] {
@@ -45,13 +41,8 @@ export function certifiedWithin(certified: Certified, bounds: Window, isSeen: (w
   for (let i = 1; i < xs.length; ++i) {
     for (let k = 1; k < ys.length; ++k) {
       const cell: Window = [xs[i - 1], ys[k - 1], xs[i], ys[k]];
-      const here: Certificate = { ...certified.otherwise };
-      const x = (cell[0] + cell[2]) / 2, y = (cell[1] + cell[3]) / 2;
-      for (const part of parts) {
-        if (!holds(part.window, [x, y, x, y])) continue;
-        here.error = Math.min(here.error, part.error);
-        here.deviation = Math.min(here.deviation, part.deviation);
-      }
+      // The edges of a cell may be those of the next window, by their rounding: its middle is in one alone.
+      const here = certifiedAt({ parts, otherwise: certified.otherwise }, [{ x: (cell[0] + cell[2]) / 2, y: (cell[1] + cell[3]) / 2 }]);
       worsen(all, here);
       const isWorse = here.error > seen.error || here.deviation > seen.deviation;
       if (isWorse && isSeen(cell)) worsen(seen, here);
@@ -67,11 +58,11 @@ function worsen(most: Certificate, by: Certificate): void {
 }
 
 /** The certificate at both ends of a line, and so all along it: windows are convex. */
-export function certifiedAt(certified: Certified, places: ReadonlyArray<{ x: number; y: number }>): Certificate {
+export function certifiedAt(certified: Certified, places: readonly MapPosition[]): Certificate {
   const least: Certificate = { ...certified.otherwise };
+  const around = windowAround(places);
   for (const part of certified.parts) {
-    const [west, south, east, north] = part.window;
-    if (!places.every((p) => p.x >= west && p.x <= east && p.y >= south && p.y <= north)) continue;
+    if (!holds(part.window, around)) continue;
     least.error = Math.min(least.error, part.error);
     least.deviation = Math.min(least.deviation, part.deviation);
   }

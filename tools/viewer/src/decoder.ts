@@ -2,18 +2,20 @@
 //
 // The engine's stream reader (decoder/decoder.cc), one a WebAssembly instance: bytes in as they come, a valid TIN at any time.
 import type { MapPosition } from './answers';
-import { type DecodeError, type GroundFacts, type ModuleExports, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
+import type { Window } from './map_window';
+import { type MeshExports, type MeshView, meshIn } from './mesh';
+import { type DecodeError, type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
 
-/** Facts of the terrain. Positions in the mesh are on a grid: map = origin + step * grid. */
-export interface Facts {
-  originX: number; originY: number; stepX: number; stepY: number;
-  heightIsFloat: boolean; heightStep: number; heightOffset: number;
-  /** Of the whole terrain, on the grid. */
-  minX: number; minY: number; maxX: number; maxY: number;
-  /** Of all samples; min > max when all is void. */
-  minHeight: number; maxHeight: number;
-  baseError: number; baseDeviation: number;
-}
+/** In the order of the module's facts (decoder/decoder.cc). */
+const factNames = [
+  'originX', 'originY', 'stepX', 'stepY', 'heightIsFloat', 'heightStep', 'heightOffset', 'minX', 'minY', 'maxX', 'maxY',
+  'minHeight', 'maxHeight', 'baseError', 'baseDeviation',
+] as const;
+/**
+ * Facts of the terrain. Positions in the mesh are on a grid: map = origin + step * grid. Least and greatest are of all samples of
+ * the whole terrain; the least height is above the greatest when all is void.
+ */
+export type Facts = Readonly<Record<typeof factNames[number], number>>;
 
 export interface Certificate {
   /** At every sample. */
@@ -22,26 +24,18 @@ export interface Certificate {
   deviation: number;
 }
 
-/** Words of a vertex: x, y on the grid, bits of the height, a triangle. */
-export const vertexWords = 4;
-/** Words of a triangle: its corners, counter-clockwise, then across from each its neighbour, or `none`. */
-export const triangleWords = 6;
-export const none = 0xffffffff;
-
-/** The mesh where it lies in the decoder's memory: valid until the decoder is fed again. */
-export interface MeshView {
-  vertexCount: number;
-  triangleCount: number;
-  /** `vertexWords` a vertex; positions are signed. */
-  vertices: Int32Array;
-  hasHeight: Uint8Array;
-  /** `triangleWords` a triangle. */
-  triangles: Uint32Array;
-  /** 1: void. */
-  classes: Uint8Array;
+/** The map position of a place on the grid. */
+export function onMap(facts: Facts, x: number, y: number): MapPosition {
+  return { x: facts.originX + facts.stepX * x, y: facts.originY + facts.stepY * y };
 }
 
-interface Exports extends ModuleExports {
+/** The whole terrain on the map. */
+export function boundsOf(facts: Facts): Window {
+  const southWest = onMap(facts, facts.minX, facts.minY), northEast = onMap(facts, facts.maxX, facts.maxY);
+  return [southWest.x, southWest.y, northEast.x, northEast.y];
+}
+
+interface Exports extends MeshExports {
   room(bytes: number): number;
   feed(bytes: number, oneFrame: number): number;
   beginNext(): void;
@@ -50,26 +44,18 @@ interface Exports extends ModuleExports {
   numbering(): number;
   splits(): number;
   splitsInAll(): number;
-  bytesUsed(): number;
   certifiedError(): number;
   certifiedDeviation(): number;
-  vertexCount(): number;
-  vertices(): number;
-  hasHeight(): number;
-  triangleCount(): number;
-  triangles(): number;
-  classes(): number;
+  reliefError(): number;
+  reliefDeviation(): number;
   facts(): number;
   metadata(): number;
   metadataBytes(): number;
   metresBetween(ax: number, ay: number, bx: number, by: number): number;
   metresPerMapUnit(x: number, y: number): number;
-  reliefError(): number;
-  reliefDeviation(): number;
+  curvature(): number;
+  lightSpeed(): number;
 }
-
-/** Numbers of PlainFacts (decoder/module.h). */
-export const factNumbers = 15;
 
 let versions = 0;
 
@@ -113,29 +99,27 @@ export class Decoder {
   get numbering(): number { return this.wasm.numbering(); }
   get splits(): number { return this.wasm.splits(); }
   get splitsInAll(): number { return this.wasm.splitsInAll(); }
-  get bytesUsed(): number { return this.wasm.bytesUsed(); }
   get certificate(): Certificate {
     return { error: this.wasm.certifiedError(), deviation: this.wasm.certifiedDeviation() };
   }
-  /** Bytes of memory that the decoder holds. */
-  get memoryBytes(): number { return this.wasm.memory.buffer.byteLength; }
-
-  /** The facts as both modules have them, in the order of PlainFacts. */
-  get plainFacts(): Float64Array { return numbersAt(this.wasm.memory, this.wasm.facts(), factNumbers); }
-
-  get facts(): Facts {
-    const f = this.plainFacts;
-    return {
-      originX: f[0], originY: f[1], stepX: f[2], stepY: f[3], heightIsFloat: f[4] !== 0, heightStep: f[5],
-      heightOffset: f[6], minX: f[7], minY: f[8], maxX: f[9], maxY: f[10], minHeight: f[11], maxHeight: f[12],
-      baseError: f[13], baseDeviation: f[14],
-    };
+  /** What holds of any mesh of this terrain: both lie between its least and its greatest height. */
+  get certificateByRelief(): Certificate {
+    return { error: this.wasm.reliefError(), deviation: this.wasm.reliefDeviation() };
   }
 
-  /** JSON of the sender: CRS, units, what was asked. */
-  get metadata(): string {
+  get facts(): Facts {
+    const numbers = numbersAt(this.wasm.memory, this.wasm.facts(), factNames.length);
+    return Object.fromEntries(factNames.map((name, i) => [name, numbers[i]])) as Facts;
+  }
+
+  /** What the sender tells in JSON: CRS, units, what was asked. Text that is no JSON tells nothing: null. */
+  get metadata(): unknown {
     const bytes = new Uint8Array(this.wasm.memory.buffer, this.wasm.metadata(), this.wasm.metadataBytes());
-    return new TextDecoder().decode(bytes);
+    try {
+      return JSON.parse(new TextDecoder().decode(bytes));
+    } catch {
+      return null;
+    }
   }
 
   /** Tells the ground below the terrain, for lengths; without any they are map units. */
@@ -154,23 +138,11 @@ export class Decoder {
     return [x, y];
   }
 
-  /** What holds of any mesh of this terrain: both lie between its least and its greatest height. */
-  get certificateByRelief(): Certificate {
-    return { error: this.wasm.reliefError(), deviation: this.wasm.reliefDeviation() };
-  }
+  /** How much lower what lies at a distance looks, for the square of the distance; in the height's unit. */
+  get curvature(): number { return this.wasm.curvature(); }
+  /** The height's units a second. */
+  get lightSpeed(): number { return this.wasm.lightSpeed(); }
 
-  get mesh(): MeshView {
-    const { wasm } = this;
-    const buffer = wasm.memory.buffer;
-    const vertexCount = wasm.vertexCount();
-    const triangleCount = wasm.triangleCount();
-    return {
-      vertexCount,
-      triangleCount,
-      vertices: new Int32Array(buffer, wasm.vertices(), vertexCount * vertexWords),
-      hasHeight: new Uint8Array(buffer, wasm.hasHeight(), vertexCount),
-      triangles: new Uint32Array(buffer, wasm.triangles(), triangleCount * triangleWords),
-      classes: new Uint8Array(buffer, wasm.classes(), triangleCount),
-    };
-  }
+  /** Valid until the decoder is fed again. */
+  get mesh(): MeshView { return meshIn(this.wasm); }
 }

@@ -2,8 +2,8 @@
 //
 // The mesh as the GPU wants it: positions and normals around the local origin, corners of the surface's triangles. Void
 // triangles are left out, so voids stay open.
-import { MeshView, none, triangleWords, vertexWords } from './decoder';
-import { Frame, heightOf } from './frame';
+import { type Frame, heightOf } from './frame';
+import { type MeshView, none, triangleWords, vertexWords } from './mesh';
 
 export interface DrawnMesh {
   /** Three a vertex, metres in the scene. */

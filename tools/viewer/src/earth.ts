@@ -2,19 +2,26 @@
 //
 // The Earth below the terrain, as the engine tells it from what a stream says of its CRS.
 import type { Lengths, MapPosition } from './answers';
-import type { Decoder } from './decoder';
-import type { Units } from './frame';
+import { type Decoder, onMap } from './decoder';
+import type { Window } from './map_window';
 import type { GroundFacts } from './module';
 
 /** The request of the stream: its certificate holds there. */
 export interface Request {
-  window?: [number, number, number, number];
+  window?: Window;
   error?: number;
   levels?: number[];
   splits?: number;
 }
 
+export interface Units {
+  horizontal: string;
+  height: string;
+}
+
+/** What the metadata of a stream tell. */
 export interface Told {
+  units: Units;
   /** Null: written by a program that did not tell it. */
   ground: GroundFacts | null;
   freeOfVoids: boolean;
@@ -23,12 +30,13 @@ export interface Told {
 
 /** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
-  const all = (metadata ?? {}) as { ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: Request };
+  const all = (metadata ?? {}) as { units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: Request };
   const g = all.ground;
   const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
   const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
     isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
   return {
+    units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
     ground: !known ? null : {
       geographic: g.geographic === true, semi_major: g.semi_major as number, inverse_flattening: Number(g.inverse_flattening) || 0,
       radians_per_map_unit: g.radians_per_map_unit ?? 0, metres_per_map_unit: g.metres_per_map_unit ?? 1,
@@ -43,8 +51,9 @@ export interface Earth {
   isDegrees: boolean;
   lengths: Lengths;
   metresPerHeight: number;
-  /** Metres; 0: not known. */
-  diameter: number;
+  /** What lines of sight are drawn with (Decoder). */
+  curvature: number;
+  lightSpeed: number;
   /** Metres of a map unit along x and along y, at parallels from south to north. */
   scales: Array<{ y: number; x: number; perY: number }>;
   /** Lengths of the terrain along its middle parallel and its middle meridian, metres; null: not known. */
@@ -56,30 +65,28 @@ const roughDegree = 111195;
 const parallels = 64;
 
 /** The Earth below what `decoder` holds, to which `told` was described. */
-export function earthOf(decoder: Decoder, told: Told, units: Units): Earth {
+export function earthOf(decoder: Decoder, { ground, units }: Told): Earth {
   const { facts } = decoder;
-  const { ground } = told;
   const isDegrees = ground?.geographic ?? units.horizontal === 'degree';
-  const x = (share: number): number => facts.originX + facts.stepX * (facts.minX + share * (facts.maxX - facts.minX));
-  const y = (share: number): number => facts.originY + facts.stepY * (facts.minY + share * (facts.maxY - facts.minY));
+  const at = (x: number, y: number): MapPosition =>
+    onMap(facts, facts.minX + x * (facts.maxX - facts.minX), facts.minY + y * (facts.maxY - facts.minY));
   const isUnknown = ground === null || (!isDegrees && units.horizontal === 'unknown');
-  const scaleAt = (at: MapPosition): [number, number] => {
-    if (ground !== null) return decoder.metresPerMapUnit(at);
-    return isDegrees ? [roughDegree * Math.max(0.01, Math.cos(at.y * Math.PI / 180)), roughDegree] : [1, 1];
+  const scale = (place: MapPosition): [number, number] => {
+    if (ground !== null) return decoder.metresPerMapUnit(place);
+    return isDegrees ? [roughDegree * Math.max(0.01, Math.cos(place.y * Math.PI / 180)), roughDegree] : [1, 1];
   };
   const between = (a: MapPosition, b: MapPosition): number => (isUnknown ? NaN : decoder.metresBetween(a, b));
-  const size: [number, number] = [
-    between({ x: x(0), y: y(0.5) }, { x: x(1), y: y(0.5) }), between({ x: x(0.5), y: y(0) }, { x: x(0.5), y: y(1) }),
-  ];
+  const size: [number, number] = [between(at(0, 0.5), at(1, 0.5)), between(at(0.5, 0), at(0.5, 1))];
   return {
     isDegrees,
     lengths: isDegrees ? { unit: 'metre', metres: 1 } : { unit: units.horizontal, metres: isUnknown ? null : ground.metres_per_map_unit },
     metresPerHeight: ground?.metres_per_height ?? 1,
-    diameter: 2 * (ground?.semi_major ?? 0),
+    curvature: decoder.curvature,
+    lightSpeed: decoder.lightSpeed,
     scales: Array.from({ length: parallels + 1 }, (_, i) => {
-      const at = { x: x(0.5), y: y(i / parallels) };
-      const [alongX, alongY] = scaleAt(at);
-      return { y: at.y, x: alongX, perY: alongY };
+      const place = at(0.5, i / parallels);
+      const [x, perY] = scale(place);
+      return { y: place.y, x, perY };
     }),
     size: size.every(Number.isFinite) ? size : null,
   };

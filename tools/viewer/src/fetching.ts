@@ -14,12 +14,9 @@ export class Problem extends Error {
   }
 }
 
-/** fetch(), whose failures say what they may mean. A cancelled request stays an AbortError. */
-export async function opened(address: string, init: RequestInit): Promise<Response> {
-  try {
-    return await fetch(address, init);
-  } catch (error) {
-    if ((error as Error).name === 'AbortError') throw error;
+/** What a host answers. Throws the Problem of a host that cannot be reached, or of an answer that is none. */
+export async function opened(address: string, init: RequestInit = {}): Promise<Response> {
+  const response = await fetch(address, init).catch(() => {
     const other = new URL(address, self.location.href).origin !== self.location.origin;
     throw new Problem(
       'The terrain cannot be reached',
@@ -27,11 +24,22 @@ export async function opened(address: string, init: RequestInit): Promise<Respon
         ? `${new URL(address, self.location.href).host} did not answer, or does not let pages of other hosts read it ` +
           '(its answers need the header Access-Control-Allow-Origin).'
         : 'The connection to the host broke, or there is none.');
-  }
+  });
+  await checkAnswer(response);
+  return response;
 }
 
-/** Throws the Problem of an answer that is none. */
-export async function checkAnswer(response: Response): Promise<void> {
+/** A module of the viewer, which lies beside the page. */
+export async function moduleAt(folder: string, name: string): Promise<WebAssembly.Module> {
+  const fetched = await fetch(new URL(name, folder)).catch(() => null);
+  if (fetched === null) {
+    throw new Problem('The viewer cannot be reached', `A part of it (${name}) did not come: the connection to the host broke, or there is none.`);
+  }
+  if (!fetched.ok) throw new Problem('The viewer is not whole', `A part of it (${name}) does not lie beside it.`);
+  return WebAssembly.compile(await fetched.arrayBuffer());
+}
+
+async function checkAnswer(response: Response): Promise<void> {
   if (response.ok) return;
   const { status } = response;
   const type = response.headers.get('Content-Type') ?? '';

@@ -3,14 +3,22 @@
 // Numbers for people.
 import type { Lengths } from './answers';
 
+/** So many significant digits. */
+export function rounded(value: number, digits: number): number {
+  return Number(value.toPrecision(digits));
+}
+
+function grouped(digits: string): string {
+  return digits.replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
 /** So many significant digits, without an exponent, with thin spaces between thousands. */
 export function number(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return '–';
   if (value === 0) return '0';
   const places = Math.max(0, Math.min(12, digits - 1 - Math.floor(Math.log10(Math.abs(value)))));
   const [whole, part] = Math.abs(value).toFixed(places).split('.');
-  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
-  return (value < 0 ? '\u2212' : '') + grouped + (part === undefined ? '' : `.${part}`);
+  return (value < 0 ? '\u2212' : '') + (whole.length > 4 ? grouped(whole) : whole) + (part === undefined ? '' : `.${part}`);
 }
 
 /** A number as number() writes it, but never below the value: for bounds. */
@@ -22,13 +30,21 @@ export function bound(value: number, digits = 3): string {
 }
 
 export function count(value: number): string {
-  return String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+  return grouped(String(Math.round(value)));
 }
 
 export function bytes(value: number): string {
   if (value < 1000) return `${value} B`;
   if (value < 1e6) return `${number(value / 1e3, 3)} KB`;
   return `${number(value / 1e6, 3)} MB`;
+}
+
+/** The short sign of a unit, for labels. */
+export function signOf(unit: string): string {
+  if (unit === 'metre' || unit === 'unknown') return 'm';
+  if (/foot|feet/.test(unit)) return 'ft';
+  if (unit === 'degree') return '°';
+  return unit;
 }
 
 /** A length given in metres. */

@@ -3,27 +3,9 @@
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
 // middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
 // the whole terrain. Lengths that the page tells come from the engine.
-import type { Facts } from './decoder';
-import { type Earth, scaleAt } from './earth';
-
-export interface Units {
-  horizontal: string;
-  height: string;
-}
-
-/** Units as the metadata of a stream tell them. */
-export function unitsOf(metadata: unknown): Units {
-  const units = (metadata as { units?: Partial<Units> } | null)?.units;
-  return { horizontal: units?.horizontal ?? 'unknown', height: units?.height ?? 'unknown' };
-}
-
-/** The short sign of a unit, for labels. */
-export function signOf(unit: string): string {
-  if (unit === 'metre' || unit === 'unknown') return 'm';
-  if (/foot|feet/.test(unit)) return 'ft';
-  if (unit === 'degree') return '°';
-  return unit;
-}
+import { type Facts, boundsOf, onMap } from './decoder';
+import { type Earth, type Units, scaleAt } from './earth';
+import type { Window } from './map_window';
 
 export class Frame {
   /** The middle of the terrain, on the map. */
@@ -39,8 +21,7 @@ export class Frame {
 
   constructor(readonly facts: Facts, readonly units: Units, readonly earth: Earth) {
     const f = facts;
-    this.middleX = f.originX + f.stepX * (f.minX + f.maxX) / 2;
-    this.middleY = f.originY + f.stepY * (f.minY + f.maxY) / 2;
+    ({ x: this.middleX, y: this.middleY } = onMap(f, (f.minX + f.maxX) / 2, (f.minY + f.maxY) / 2));
     this.isDegrees = earth.isDegrees;
     // The scale of its middle parallel.
     const [x, y] = scaleAt(earth, this.middleY);
@@ -51,10 +32,7 @@ export class Frame {
   }
 
   /** The whole terrain on the map. */
-  get bounds(): [number, number, number, number] {
-    const { minX, minY, maxX, maxY } = this.facts;
-    return [this.mapOfGridX(minX), this.mapOfGridY(minY), this.mapOfGridX(maxX), this.mapOfGridY(maxY)];
-  }
+  get bounds(): Window { return boundsOf(this.facts); }
 
   /** Extents of the terrain in the scene. */
   get width(): number { return (this.facts.maxX - this.facts.minX) * this.facts.stepX * this.scaleX; }
@@ -67,16 +45,12 @@ export class Frame {
   mapX(sceneX: number): number { return this.middleX + sceneX / this.scaleX; }
   mapY(sceneY: number): number { return this.middleY + sceneY / this.scaleY; }
   heightAt(sceneZ: number): number { return this.baseHeight + sceneZ / this.scaleZ; }
-  gridX(mapX: number): number { return (mapX - this.facts.originX) / this.facts.stepX; }
-  gridY(mapY: number): number { return (mapY - this.facts.originY) / this.facts.stepY; }
-  mapOfGridX(x: number): number { return this.facts.originX + this.facts.stepX * x; }
-  mapOfGridY(y: number): number { return this.facts.originY + this.facts.stepY * y; }
 }
 
 const bits = new DataView(new ArrayBuffer(4));
 /** The height of the bits that a vertex holds. */
 export function heightOf(facts: Facts, heightBits: number): number {
-  if (!facts.heightIsFloat) return facts.heightOffset + facts.heightStep * heightBits;
+  if (facts.heightIsFloat === 0) return facts.heightOffset + facts.heightStep * heightBits;
   bits.setInt32(0, heightBits);
   return facts.heightOffset + facts.heightStep * bits.getFloat32(0);
 }

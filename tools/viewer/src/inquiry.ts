@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The tools: what a click asks, and how the answer is written and drawn.
-import type { MapPosition, Station } from './answers';
-import { bound, coordinates, height as heightText, interval, length as lengthText, metres, number } from './format';
-import { Frame, signOf } from './frame';
+import type { MapPosition, Sight, Station } from './answers';
+import { drawnSight } from './drawn_sight';
+import { bound, coordinates, height as heightText, interval, length as lengthText, metres, number, signOf } from './format';
+import type { Frame } from './frame';
 import type { Answer, Certainty, FromWorker, Question, ToWorker } from './messages';
 import { colour, download, hide, part, speak, toast } from './page';
-import { verdictColour } from './panel';
-import { csvOf, drawPlot, heightAlong } from './plot';
+import { csvOf, drawPlot } from './plot';
 import type { Place, Relief } from './relief';
-import { curvatureDrop, fresnelRadius } from './ray';
+import { climbOf, extentOf, heightAlong, heightsOf, runsOf } from './stations';
 
 export type Tool = 'height' | 'profile' | 'sight' | 'viewshed';
 type AnswerOf<K extends Answer['kind']> = Extract<Answer, { kind: K }>;
+type AlongLine = AnswerOf<'profile'> | AnswerOf<'sight'>;
 
 export class Inquiry {
   private tool: Tool = 'height';
   private from: MapPosition | null = null;
   private asked: Question | null = null;
   private ticket = 0;
-  private shownProfile: AnswerOf<'profile'> | AnswerOf<'sight'> | null = null;
+  private shownProfile: AlongLine | null = null;
 
   constructor(
     private readonly relief: Relief, private readonly frame: () => Frame | null, private readonly send: (m: ToWorker) => void,
@@ -49,10 +50,16 @@ export class Inquiry {
   /** What a line of sight or a viewshed is asked with, before there is an answer. */
   private showForm(tool: 'sight' | 'viewshed', hint: string): void {
     this.write(tool === 'sight' ? 'Line of sight' : 'Viewshed', '', hint);
-    hide(false, 'answer', 'sight-form');
+    this.layOut(tool, false);
+  }
+
+  /** Shows the parts of the answer that a tool has. */
+  private layOut(tool: Tool, hasProfile: boolean): void {
+    hide(false, 'answer');
+    hide(tool !== 'sight' && tool !== 'viewshed', 'sight-form');
     hide(tool !== 'viewshed', 'radius-field');
     hide(tool === 'viewshed', 'frequency-field');
-    hide(true, 'csv', 'plot');
+    hide(!hasProfile, 'csv', 'plot');
   }
 
   /** Forgets what was asked, with its marks. */
@@ -138,11 +145,7 @@ export class Inquiry {
   private async show(answer: Answer, frame: Frame): Promise<void> {
     this.relief.clearMarks();
     this.shownProfile = answer.kind === 'profile' || answer.kind === 'sight' ? answer : null;
-    hide(false, 'answer');
-    hide(answer.kind !== 'sight' && answer.kind !== 'viewshed', 'sight-form');
-    hide(answer.kind !== 'viewshed', 'radius-field');
-    hide(answer.kind === 'viewshed', 'frequency-field');
-    hide(this.shownProfile === null, 'csv', 'plot');
+    this.layOut(answer.kind, this.shownProfile !== null);
     if (answer.kind === 'height') this.showHeight(answer, frame);
     if (answer.kind === 'profile') this.showProfile(answer, frame);
     if (answer.kind === 'sight') this.showSight(answer, frame);
@@ -193,7 +196,7 @@ export class Inquiry {
     const sign = signOf(frame.units.height);
     const { profile, certainty } = answer;
     const { stations, length, lengths } = profile;
-    const known = stations.flatMap((s) => (s.height === null ? [] : [s.height]));
+    const known = heightsOf(stations);
     this.tell({
       length, unit: lengths.unit, metres: lengths.metres === null ? null : length * lengths.metres, deviation: certainty.deviation,
     });
@@ -202,8 +205,8 @@ export class Inquiry {
       hide(true, 'csv', 'plot');
       return;
     }
-    const d = certainty.isExact ? 0 : certainty.deviation;
-    const low = known.reduce((a, b) => Math.min(a, b)), high = known.reduce((a, b) => Math.max(a, b));
+    const d = slackOf(certainty);
+    const [low, high] = extentOf(known);
     const climb = climbOf(stations);
     this.write('Profile', lengthText(length, lengths),
       `from ${heightText(low, d, sign)} to ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
@@ -262,36 +265,16 @@ export class Inquiry {
     return this.placeOf(frame, { x: from.x + share * (to.x - from.x), y: from.y + share * (to.y - from.y) }, height);
   }
 
-  private drawGround(answer: AnswerOf<'profile'> | AnswerOf<'sight'>, frame: Frame, lineColour: string): void {
-    let run: Place[] = [];
-    const end = (): void => {
-      if (run.length > 1) this.relief.addLine(run, lineColour);
-      run = [];
-    };
+  private drawGround(answer: AlongLine, frame: Frame, lineColour: string): void {
     const placeOf = (s: Station): Place => this.placeOf(frame, s, s.height as number);
-    for (const s of answer.profile.stations) {
-      if (s.height === null) end();
-      else run.push(placeOf(s));
-    }
-    end();
+    for (const run of runsOf(answer.profile.stations)) this.relief.addLine(run.map(placeOf), lineColour);
     const known = answer.profile.stations.filter((s) => s.height !== null);
     for (const s of [known[0], known[known.length - 1]]) if (s !== undefined) this.relief.addMark(placeOf(s), colour('mark'), 11);
   }
 
-  /** The ray, bent as the Earth is: so it stands to the flat picture as it stands to the ground. */
-  private rayHeight(answer: AnswerOf<'sight'>, frame: Frame): (share: number) => number {
-    const { request, sight, profile } = answer;
-    const known = profile.stations.filter((s) => s.height !== null);
-    const from = (known[0]?.height ?? 0) + request.observerHeight / frame.scaleZ;
-    const to = (known[known.length - 1]?.height ?? 0) + request.targetHeight / frame.scaleZ;
-    const diameter = frame.earth.diameter / frame.scaleZ;
-    return (share) => from + share * (to - from) + curvatureDrop(sight.length, share, diameter);
-  }
-
   private drawRay(answer: AnswerOf<'sight'>, frame: Frame): void {
-    const at = this.rayHeight(answer, frame);
+    const { at } = drawnSight(answer, frame);
     const { sight, profile } = answer;
-    if (sight.verdict === 'undefined') return;
     const ray = Array.from({ length: 65 }, (_, i) => this.along(frame, answer, i / 64, at(i / 64)));
     this.relief.addLine(ray, verdictColour(sight.verdict));
     if (sight.verdict === 'visible' || sight.clearance === null) return;
@@ -302,8 +285,8 @@ export class Inquiry {
 
   /** The zone as a tube of twelve sides. */
   private drawFresnel(answer: AnswerOf<'sight'>, frame: Frame): void {
-    const at = this.rayHeight(answer, frame);
-    const { sight, request, from, to } = answer;
+    const { at, radius: zone } = drawnSight(answer, frame);
+    const { sight, from, to } = answer;
     const dx = frame.sceneX(to.x) - frame.sceneX(from.x), dy = frame.sceneY(to.y) - frame.sceneY(from.y);
     const length = Math.hypot(dx, dy);
     const sides = 12, rings = 48;
@@ -311,7 +294,7 @@ export class Inquiry {
     const corners: number[] = [];
     for (let i = 0; i <= rings; ++i) {
       const middle = this.along(frame, answer, i / rings, at(i / rings));
-      const radius = fresnelRadius(request.frequency, sight.length * frame.scaleZ, i / rings);
+      const radius = zone(i / rings) * frame.scaleZ;
       for (let k = 0; k < sides; ++k) {
         const angle = 2 * Math.PI * k / sides;
         const aside = radius * Math.cos(angle);
@@ -320,39 +303,42 @@ export class Inquiry {
         if (i < rings) corners.push(a, b, a + sides, b, b + sides, a + sides);
       }
     }
-    if (sight.verdict !== 'undefined') this.relief.addBody(places, corners, verdictColour(sight.verdict));
+    this.relief.addBody(places, corners, verdictColour(sight.verdict));
   }
 
-  private plot(answer: AnswerOf<'profile'> | AnswerOf<'sight'>): void {
+  private plot(answer: AlongLine): void {
     const frame = this.frame();
     if (frame === null || part('plot').hasAttribute('hidden')) return;
     const { profile, certainty } = answer;
-    const ray = answer.kind === 'sight' && answer.sight.verdict !== 'undefined'
-      ? {
-          at: this.rayHeight(answer, frame), colour: verdictColour(answer.sight.verdict),
-          radius: (share: number) => answer.request.frequency > 0
-            ? fresnelRadius(answer.request.frequency, answer.sight.length * frame.scaleZ, share) / frame.scaleZ : 0,
-        }
-      : undefined;
+    const ray = answer.kind === 'sight' ? { ...drawnSight(answer, frame), colour: verdictColour(answer.sight.verdict) } : undefined;
     drawPlot(part('plot') as unknown as SVGSVGElement, {
-      profile, heightSign: signOf(frame.units.height), deviation: certainty.isExact ? 0 : certainty.deviation, ray,
-      onHover: () => undefined,
+      profile, heightSign: signOf(frame.units.height), deviation: slackOf(certainty), ray,
     });
   }
 
   private saveProfile(): void {
     const { shownProfile: p } = this;
     if (p === null) return;
-    download('profile.csv', csvOf(p.profile, p.certainty.isExact ? 0 : p.certainty.deviation), 'text/csv');
+    download('profile.csv', csvOf(p.profile, slackOf(p.certainty)), 'text/csv');
   }
+}
+
+/** The colours of marks, which follow light and dark. */
+function verdictColour(verdict: Sight['verdict']): string {
+  return colour({ visible: 'good', hidden: 'bad', unsure: 'unsure', undefined: 'soft' }[verdict]);
 }
 
 function exactly(certainty: Certainty): string {
   return certainty.of === 'terrain' ? 'exact, of the full terrain' : 'exact';
 }
 
+/** How far the full terrain may be from a height that is told. */
+function slackOf(certainty: Certainty): number {
+  return certainty.isExact ? 0 : certainty.deviation;
+}
+
 function certaintyNote(certainty: Certainty, sign: string): string {
-  if (certainty.isExact) return certainty.of === 'terrain' ? 'Heights exact, of the full terrain' : 'Heights exact';
+  if (certainty.isExact) return `Heights ${exactly(certainty)}`;
   return `Heights within \u00b1${bound(certainty.deviation)} ${sign}` +
     (certainty.of === 'terrain' ? ' of the source' : ' of the full terrain');
 }
@@ -366,15 +352,4 @@ function clearanceNote(min: number, max: number): string {
   if (min >= 0) return Number.isFinite(max) ? `clears the ground by ${told(min, max)}` : `clears the ground by ${number(min, 3)} m or more`;
   if (max < 0) return `is blocked by ${told(-max, -min)}`;
   return `is between ${number(-min, 3)} m below and ${Number.isFinite(max) ? `${number(max, 3)} m` : 'any height'} above the ground`;
-}
-
-function climbOf(stations: readonly Station[]): { up: number; down: number } {
-  const climb = { up: 0, down: 0 };
-  stations.forEach((s, i) => {
-    const before = stations[i - 1]?.height ?? null;
-    if (s.height === null || before === null) return;
-    if (s.height > before) climb.up += s.height - before;
-    else climb.down += before - s.height;
-  });
-  return climb;
 }

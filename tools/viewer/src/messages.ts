@@ -5,12 +5,12 @@ import type { Located, MapPosition, Profile, Sight, SightRequest } from './answe
 import type { Certified } from './certified';
 import type { Certificate, Facts } from './decoder';
 import type { DrawnMesh } from './drawn_mesh';
-import type { Earth } from './earth';
-import type { Units } from './frame';
+import type { Earth, Units } from './earth';
+import type { Window } from './map_window';
 
 /** A part of the terrain, and the error at which it is wanted there, in the height's unit. */
 export interface Wanted {
-  window: [number, number, number, number];
+  window: Window;
   error: number;
 }
 
@@ -40,7 +40,7 @@ export type Question =
 export interface Viewshed {
   /** A picture of what is seen. */
   picture: Blob;
-  window: [number, number, number, number];
+  window: Window;
 }
 
 /** The certainty of heights of the mesh that is shown, or of the full terrain. `isExact`: they are the source's. */
@@ -49,40 +49,41 @@ export interface Certainty extends Certificate {
   isExact: boolean;
 }
 
+export type QuestionOf<K extends Question['kind']> = Extract<Question, { kind: K }>;
+
+/** The question, and what is answered. */
 export type Answer =
-  | { kind: 'height'; at: MapPosition; located: Located; certainty: Certainty; cost?: string }
-  | { kind: 'profile'; from: MapPosition; to: MapPosition; profile: Profile; certainty: Certainty }
-  | {
-      kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest; sight: Sight; profile: Profile;
-      certainty: Certainty;
-    }
-  | { kind: 'viewshed'; at: MapPosition; radius: number; viewshed: Viewshed };
+  | QuestionOf<'height'> & { located: Located; certainty: Certainty; cost?: string }
+  | QuestionOf<'profile'> & { profile: Profile; certainty: Certainty }
+  | QuestionOf<'sight'> & { sight: Sight; profile: Profile; certainty: Certainty }
+  | QuestionOf<'viewshed'> & { viewshed: Viewshed };
 
 /** How far loading is. */
-export interface Status {
-  vertices: number;
-  triangles: number;
-  splits: number;
-  splitsInAll: number;
+export interface Progress {
   /** Received, and to come as far as the host says; 0 when it does not. */
   bytes: number;
   bytesInAll: number;
-  /** The certificates of the mesh that was handed over last. */
-  certified: Certified;
   /** `held`: there is more, which the error, the number of vertices or the service keeps away. */
   state: 'loading' | 'complete' | 'held' | 'cut' | 'damaged';
   /** Why nothing comes at the moment, though more is asked for. */
   waitsFor?: string;
   /** Why it is held. */
   heldBy?: 'error' | 'vertices' | 'service';
-  isServed: boolean;
-  /** The requests that were made, and what the last one cost the service. */
-  requests: number;
+  /** What the last answer cost the service. */
   cost?: string;
 }
 
+export interface Status extends Progress {
+  vertices: number;
+  triangles: number;
+  splits: number;
+  splitsInAll: number;
+  /** The certificates of the mesh that was handed over last. */
+  certified: Certified;
+}
+
 export type FromWorker =
-  | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; metadata: unknown; name: string }
+  | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; name: string }
   | { kind: 'mesh'; mesh: DrawnMesh; status: Status }
   | { kind: 'edges'; edges: Uint32Array }
   | { kind: 'status'; status: Status }
@@ -90,5 +91,5 @@ export type FromWorker =
   | { kind: 'refused'; ticket: number; message: string }
   /** The trouble that was told before is over. */
   | { kind: 'mended' }
-  /** The trouble, as a sentence; `final`: nothing more will come. */
-  | { kind: 'error'; title: string; message: string; final: boolean };
+  /** The trouble, as a sentence. */
+  | { kind: 'error'; title: string; message: string };

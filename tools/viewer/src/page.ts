@@ -37,15 +37,6 @@ export function speak(text: string): void {
   part('spoken').textContent = text;
 }
 
-/** What went wrong. `aside`: there is a terrain, which stays in sight. */
-export function trouble(title: string, message: string, aside: boolean): void {
-  const box = part('trouble');
-  box.querySelector('h2')!.textContent = title;
-  box.querySelector('p')!.textContent = message;
-  box.classList.toggle('aside', aside);
-  box.hidden = false;
-}
-
 export function download(name: string, text: string, type: string): void {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(new Blob([text], { type }));

@@ -2,10 +2,10 @@
 //
 // The card with settings and facts: reads and writes Settings, shows Status.
 import type { Certificate } from './decoder';
-import { bound, bytes, count, number, roundBelow } from './format';
-import { Frame, signOf } from './frame';
+import { bound, bytes, count, number, roundBelow, rounded, signOf } from './format';
+import type { Frame } from './frame';
 import type { Status } from './messages';
-import { colour, input, part } from './page';
+import { input, part } from './page';
 import type { Settings } from './permalink';
 import { gradientOf, heightStops, slopeStops } from './ramps';
 import type { Shading } from './relief';
@@ -102,7 +102,7 @@ export class Panel {
 
   private errorAt(place: number): number {
     if (place >= 100) return 0;
-    return Number((this.relief / 4 * errorSpan ** (-place / 99)).toPrecision(2));
+    return rounded(this.relief / 4 * errorSpan ** (-place / 99), 2);
   }
   private placeOf(error: number): number {
     if (error === 0) return 100;
@@ -148,7 +148,3 @@ export class Panel {
 export function compass(degrees: number): string {
   return ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'][Math.round(degrees / 45) % 8];
 }
-
-/** Colours of marks, which follow light and dark. */
-export const verdictColour = (verdict: 'visible' | 'hidden' | 'unsure'): string =>
-  colour({ visible: 'good', hidden: 'bad', unsure: 'unsure' }[verdict]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Camera and settings in the address, behind #: whoever opens it sees the same.
+import { rounded } from './format';
 import type { Shading } from './relief';
 import type { Pose } from './view';
 
@@ -21,20 +22,18 @@ export const defaults: Settings = {
   shading: 'height', wireframe: false, exaggeration: 1, azimuth: 315, altitude: 42, interval: 0, error: 0,
 };
 
-const short = (value: number, digits: number): string => String(Number(value.toPrecision(digits)));
-
 export function toHash(pose: Pose | null, settings: Settings): string {
   const parts = new URLSearchParams();
   if (pose !== null) {
     parts.set('at', [
-      short(pose.x, 10), short(pose.y, 10), short(pose.height, 5), short(pose.distance, 5), short(pose.heading, 4),
-      short(pose.tilt, 4),
+      rounded(pose.x, 10), rounded(pose.y, 10), rounded(pose.height, 5), rounded(pose.distance, 5), rounded(pose.heading, 4),
+      rounded(pose.tilt, 4),
     ].join(','));
   }
   if (settings.shading !== defaults.shading) parts.set('shading', settings.shading);
   if (settings.wireframe) parts.set('wireframe', '1');
   for (const key of ['exaggeration', 'azimuth', 'altitude', 'interval', 'error'] as const) {
-    if (settings[key] !== defaults[key]) parts.set(key, short(settings[key], 5));
+    if (settings[key] !== defaults[key]) parts.set(key, String(rounded(settings[key], 5)));
   }
   return parts.toString().replace(/%2C/g, ',');
 }

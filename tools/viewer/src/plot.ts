@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A profile as a drawing and as CSV.
-import type { Lengths, Profile, Station } from './answers';
-import { height as heightText, length as lengthText, roundBelow } from './format';
+import type { Lengths, Profile } from './answers';
+import type { DrawnSight } from './drawn_sight';
+import { height as heightText, length as lengthText, roundBelow, rounded } from './format';
+import { extentOf, heightAlong, heightsOf, runsOf } from './stations';
 
 const namespace = 'http://www.w3.org/2000/svg';
 
@@ -17,10 +19,8 @@ export interface PlotOptions {
   profile: Profile;
   heightSign: string;
   deviation: number;
-  /** A line of sight over the profile: heights at shares of the way, and its Fresnel zone's radius there. */
-  ray?: { at: (share: number) => number; radius: (share: number) => number; colour: string };
-  /** Told where the pointer is, as a distance; null when it leaves. */
-  onHover: (distance: number | null) => void;
+  /** A line of sight over the profile. */
+  ray?: DrawnSight & { colour: string };
 }
 
 const left = 46, right = 22, top = 12, bottom = 24;
@@ -32,11 +32,11 @@ export function drawPlot(svg: SVGSVGElement, options: PlotOptions): void {
   const { width, height } = svg.getBoundingClientRect();
   svg.replaceChildren();
   svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
-  const known = stations.flatMap((s) => (s.height === null ? [] : [s.height]));
+  const known = heightsOf(stations);
   if (known.length === 0) return;
   const shares = Array.from({ length: 65 }, (_, i) => i / 64);
   const rays = ray === undefined ? [] : shares.flatMap((s) => [ray.at(s) + ray.radius(s), ray.at(s) - ray.radius(s)]);
-  const low = known.concat(rays).reduce((a, b) => Math.min(a, b)), high = known.concat(rays).reduce((a, b) => Math.max(a, b));
+  const [low, high] = extentOf(known.concat(rays));
   const slack = 0.08 * Math.max(high - low, 1e-6);
   const x = (distance: number): number => left + (distance / length) * (width - left - right);
   const y = (value: number): number =>
@@ -77,15 +77,14 @@ function drawAxes(svg: SVGSVGElement, a: {
   for (let h = Math.ceil(a.low / heightStep) * heightStep; h <= a.high; h += heightStep) {
     svg.append(
       element('line', { class: 'grid', x1: left, x2: a.width - right, y1: a.y(h), y2: a.y(h) }),
-      element('text', { x: left - 6, y: a.y(h) + 4, 'text-anchor': 'end' }, `${Number(h.toPrecision(6))}`));
+      element('text', { x: left - 6, y: a.y(h) + 4, 'text-anchor': 'end' }, String(rounded(h, 6))));
   }
   const metre = a.lengths.metres ?? 1;
   const metres = a.length * metre;
   const step = roundBelow(metres / 3);
   const inKilometres = a.lengths.metres !== null && metres >= 2000;
   for (let d = 0; d <= metres; d += step) {
-    const label = inKilometres ? `${Number((d / 1000).toPrecision(4))} km`
-      : `${Number(d.toPrecision(4))}${a.lengths.metres === null ? '' : ' m'}`;
+    const label = inKilometres ? `${rounded(d / 1000, 4)} km` : `${rounded(d, 4)}${a.lengths.metres === null ? '' : ' m'}`;
     svg.append(element('text', { x: a.x(d / metre), y: a.height - 7, 'text-anchor': d === 0 ? 'start' : 'middle' }, label));
   }
   svg.append(element('text', { x: left - 6, y: a.height - 7, 'text-anchor': 'end' }, a.sign));
@@ -103,39 +102,13 @@ function addCursor(svg: SVGSVGElement, options: PlotOptions, x: (d: number) => n
     const distance = Math.max(0, Math.min(1, share)) * options.profile.length;
     const value = heightAlong(options.profile.stations, distance);
     cursor.setAttribute('visibility', value === null ? 'hidden' : 'visible');
-    options.onHover(distance);
     if (value === null) return;
     dot.setAttribute('cx', String(x(distance)));
     dot.setAttribute('cy', String(y(value)));
     label.setAttribute('x', String(Math.max(left + 60, Math.min(box.width - 70, x(distance)))));
     label.textContent = `${lengthText(distance, options.profile.lengths)}, ${heightText(value, options.deviation, options.heightSign)}`;
   };
-  svg.onpointerleave = (): void => {
-    cursor.setAttribute('visibility', 'hidden');
-    options.onHover(null);
-  };
-}
-
-/** Stretches without a gap. */
-export function runsOf(stations: readonly Station[]): Station[][] {
-  const runs: Station[][] = [[]];
-  for (const s of stations) {
-    if (s.height === null) runs.push([]);
-    else runs[runs.length - 1].push(s);
-  }
-  return runs.filter((run) => run.length > 1);
-}
-
-/** The height at a distance; null over a gap. */
-export function heightAlong(stations: readonly Station[], distance: number): number | null {
-  for (const run of runsOf(stations)) {
-    const next = run.findIndex((s) => s.distance >= distance);
-    if (next < 0 || distance < run[0].distance) continue;
-    const b = run[next], a = run[Math.max(0, next - 1)];
-    const part = b.distance > a.distance ? (distance - a.distance) / (b.distance - a.distance) : 0;
-    return (a.height as number) + part * ((b.height as number) - (a.height as number));
-  }
-  return null;
+  svg.onpointerleave = (): void => { cursor.setAttribute('visibility', 'hidden'); };
 }
 
 /** One line a station, with place and distance as they came; a gap is a line without a height. */

@@ -2,11 +2,11 @@
 //
 // The engine's questions of a mesh that was received (decoder/questions.cc), in a WebAssembly instance of their own: it answers
 // about a copy of the decoder's mesh, which is made anew when the decoder's has changed.
-import { stationsOf } from './answers';
+import { stationsOf } from './stations';
 import type { Located, MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
-import { factNumbers } from './decoder';
 import type { Certificate, Decoder } from './decoder';
-import { type GroundFacts, type ModuleExports, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
+import { type MeshExports, meshIn } from './mesh';
+import { type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
 
 /** What is asked: the mesh that a decoder holds, and what is known of it. */
 export interface Asked {
@@ -20,13 +20,8 @@ export interface Asked {
   isWhole: boolean;
 }
 
-interface Exports extends ModuleExports {
+interface Exports extends MeshExports {
   makeRoom(vertices: number, triangles: number): void;
-  vertices(): number;
-  hasHeight(): number;
-  triangles(): number;
-  classes(): number;
-  facts(): number;
   describe(freeOfVoids: number, error: number, deviation: number, isWhole: number): void;
   locate(x: number, y: number): number;
   profile(ax: number, ay: number, bx: number, by: number): number;
@@ -73,12 +68,12 @@ export class Questions {
   /** A line of sight over the mesh: heights above ground, in the height's unit. */
   sight(asked: Asked, a: MapPosition, heightA: number, b: MapPosition, heightB: number, hertz: number): Sight {
     return this.ask(asked, (wasm) => {
-      const n = numbersAt(wasm.memory, wasm.sight(a.x, a.y, heightA, b.x, b.y, heightB, hertz), 17);
+      const n = numbersAt(wasm.memory, wasm.sight(a.x, a.y, heightA, b.x, b.y, heightB, hertz), 13);
       const point = (i: number): SightPoint => ({ x: n[i], y: n[i + 1], distance: n[i + 2], height: n[i + 3] });
       return {
         verdict: verdicts[n[0]], length: n[1],
-        clearance: Number.isNaN(n[9]) ? null : { min: n[2], max: n[3], at: point(5) },
-        fresnel: Number.isNaN(n[4]) ? null : { ratio: n[4], at: point(13) },
+        clearance: Number.isNaN(n[5]) ? null : { min: n[2], max: n[3], at: point(5) },
+        fresnel: Number.isNaN(n[4]) ? null : { ratio: n[4], at: point(9) },
       };
     });
   }
@@ -103,12 +98,8 @@ export class Questions {
     if (this.copied === decoder.version) return;
     const { mesh } = decoder;
     wasm.makeRoom(mesh.vertexCount, mesh.triangleCount);
-    const { buffer } = wasm.memory;
-    new Int32Array(buffer, wasm.vertices(), mesh.vertices.length).set(mesh.vertices);
-    new Uint8Array(buffer, wasm.hasHeight(), mesh.hasHeight.length).set(mesh.hasHeight);
-    new Uint32Array(buffer, wasm.triangles(), mesh.triangles.length).set(mesh.triangles);
-    new Uint8Array(buffer, wasm.classes(), mesh.classes.length).set(mesh.classes);
-    new Float64Array(buffer, wasm.facts(), factNumbers).set(decoder.plainFacts);
+    const copy = meshIn(wasm);
+    for (const part of ['vertices', 'hasHeight', 'triangles', 'classes', 'facts'] as const) copy[part].set(mesh[part]);
     this.copied = decoder.version;
   }
 }

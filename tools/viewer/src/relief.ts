@@ -10,9 +10,7 @@ import type { DrawnMesh } from './drawn_mesh';
 import { GroundBelow } from './ground_below';
 import type { Frame } from './frame';
 import { heightStops, rampTexture, slopeStops } from './ramps';
-import {
-  lineFragment, lineVertex, markFragment, markVertex, placeFragment, reliefFragment, reliefVertex, ribbonVertex,
-} from './shaders';
+import { lineFragment, lineVertex, markFragment, placeFragment, reliefFragment, reliefVertex, ribbonVertex } from './shaders';
 
 export type Shading = 'height' | 'slope' | 'shade';
 
@@ -40,8 +38,6 @@ export class Relief {
   private readonly pickTarget = new WebGLRenderTarget(1, 1, {
     type: FloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter,
   });
-  /** Shared by all materials: one value for the whole scene. */
-  private readonly exaggeration = { value: 1 };
   private readonly material: ShaderMaterial;
   private readonly pickMaterial: ShaderMaterial;
   private readonly edgeMaterial: ShaderMaterial;
@@ -59,21 +55,18 @@ export class Relief {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.camera.up.set(0, 0, 1);
-    const { exaggeration } = this;
     this.material = new ShaderMaterial({
       vertexShader: reliefVertex, fragmentShader: reliefFragment, side: DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
       uniforms: {
-        exaggeration, shading: { value: 0 }, ramp: { value: rampTexture(heightStops) },
+        exaggeration: { value: 1 }, shading: { value: 0 }, ramp: { value: rampTexture(heightStops) },
         slopeRamp: { value: rampTexture(slopeStops) }, rampRange: { value: [0, 1] }, sun: { value: new Vector3(0, 0, 1) },
         haze: { value: new Color() }, hazeDistance: { value: 1 }, interval: { value: 0 }, intervalPhase: { value: 0 },
         isolineColour: { value: new Color(0.16, 0.1, 0.06) }, drape: { value: null },
         drapeWindow: { value: new Vector4(0, 0, 0, 0) },
       },
     });
-    this.pickMaterial = new ShaderMaterial({
-      vertexShader: reliefVertex, fragmentShader: placeFragment, side: DoubleSide, uniforms: { exaggeration },
-    });
+    this.pickMaterial = new ShaderMaterial({ vertexShader: reliefVertex, fragmentShader: placeFragment, side: DoubleSide });
     this.edgeMaterial = this.lineMaterial(new Color(0x0d1b2a), 0.24, 0);
     this.mesh = new Mesh(this.geometry, this.material);
     this.edges = new LineSegments(this.edgeGeometry, this.edgeMaterial);
@@ -124,9 +117,8 @@ export class Relief {
     this.draw();
   }
 
-  get verticalScale(): number { return this.exaggeration.value; }
   set verticalScale(factor: number) {
-    this.exaggeration.value = factor;
+    this.scene.scale.z = this.material.uniforms.exaggeration.value = factor;
     this.draw();
   }
 
@@ -140,7 +132,6 @@ export class Relief {
   /** Heights between isolines, in the height's unit; 0: none. */
   set isolines(interval: number) {
     this.intervalHeight = interval;
-    this.placeIsolines();
     this.draw();
   }
 
@@ -237,13 +228,10 @@ export class Relief {
   }
 
   addMark(place: Place, colour: string, size = 13): void {
-    const material = new ShaderMaterial({
-      vertexShader: markVertex, fragmentShader: markFragment, transparent: true, depthTest: false,
-      uniforms: {
-        exaggeration: this.exaggeration, size: { value: size * Math.min(devicePixelRatio, 2) },
-        colour: { value: pageColour(colour) },
-      },
-    });
+    const material = this.lineMaterial(pageColour(colour), 1, 0.005);
+    material.fragmentShader = markFragment;
+    material.depthTest = false;
+    material.uniforms.size.value = size * Math.min(devicePixelRatio, 2);
     this.addObject(new Points(geometryOf([place]), material), 3);
   }
 
@@ -286,9 +274,7 @@ export class Relief {
   private lineMaterial(colour: Color, opacity: number, lift: number): ShaderMaterial {
     return new ShaderMaterial({
       vertexShader: lineVertex, fragmentShader: lineFragment, transparent: true, depthWrite: false,
-      uniforms: {
-        exaggeration: this.exaggeration, colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift },
-      },
+      uniforms: { colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift }, size: { value: 0 } },
     });
   }
 }

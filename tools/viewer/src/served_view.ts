@@ -5,11 +5,14 @@
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import type { Certified, CertifiedPart } from './certified';
 import { Decoder } from './decoder';
-import { Problem, checkAnswer } from './fetching';
+import { Problem } from './fetching';
+import { rounded } from './format';
 import type { Frame } from './frame';
-import type { Answer, Question, Wanted } from './messages';
+import { type Window, holds, widened } from './map_window';
+import type { Answer, Progress, Question, Wanted } from './messages';
 import { DecodeError } from './module';
 import type { Collection, Service, Serving } from './service';
+import type { TerrainView, ViewEvents } from './terrain_view';
 
 const firstBytes = 64 * 1024;
 const laterBytes = 256 * 1024;
@@ -19,16 +22,6 @@ const firstWait = 1000, longestWait = 20000;
 /** The service takes 64. */
 const mostServings = 60;
 
-export interface ServedEvents {
-  /** There is more to see. */
-  grown(): void;
-  /** All that is wanted for now is there. */
-  settled(): void;
-  failed(error: unknown, final: boolean): void;
-  /** The service answers again. */
-  mended(): void;
-}
-
 /** A decoder with what it was served. */
 class Received {
   readonly decoder: Decoder;
@@ -37,7 +30,7 @@ class Received {
   /** The certificate of each serving, in its window. */
   private readonly parts: CertifiedPart[] = [];
   /** The window of the stream that is coming, once it has begun. */
-  private coming: Wanted['window'] | null = null;
+  private coming: Window | null = null;
   fingerprint = '';
   constructor(module: WebAssembly.Module) {
     this.decoder = new Decoder(module);
@@ -49,7 +42,7 @@ class Received {
   }
 
   /** The stream of `window` has begun. */
-  begin(window: Wanted['window']): void {
+  begin(window: Window): void {
     this.coming = window;
   }
 
@@ -58,7 +51,7 @@ class Received {
     if (this.coming === null) return;
     const { decoder } = this;
     this.parts.push({ window: this.coming, ...decoder.certificate });
-    this.have.push({ window: wanted.window, error: wanted.error, splits: decoder.splits });
+    this.have.push({ ...wanted, splits: decoder.splits });
     this.coming = null;
     if (!decoder.isComplete) decoder.beginNext();
   }
@@ -69,20 +62,7 @@ class Received {
   }
 }
 
-function holds(outer: readonly number[], inner: readonly number[]): boolean {
-  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] >= inner[2] && outer[3] >= inner[3];
-}
-
-/** A window larger by a share of its size on each side, within `bounds`. */
-export function widened(window: Wanted['window'], bounds: Wanted['window'], share: number): Wanted['window'] {
-  const x = share * (window[2] - window[0]), y = share * (window[3] - window[1]);
-  return [
-    Math.max(bounds[0], window[0] - x), Math.max(bounds[1], window[1] - y),
-    Math.min(bounds[2], window[2] + x), Math.min(bounds[3], window[3] + y),
-  ];
-}
-
-export class ServedView {
+export class ServedView implements TerrainView {
   private shown: Received;
   /** What is asked for now goes here; after a start anew not `shown` yet. */
   private received: Received;
@@ -98,26 +78,29 @@ export class ServedView {
   private mostHeld = Infinity;
   /** The service has not the memory for all that is wanted. */
   private isTooMuch = false;
-  bytes = 0;
-  requests = 0;
-  cost: string | undefined;
-  isLoading = true;
+  private bytes = 0;
+  private cost: string | undefined;
+  private isLoading = true;
+  /** Why nothing comes at the moment. */
+  private waitsFor: string | undefined;
+  private failures = 0;
 
   constructor(
     private readonly service: Service, private readonly collection: Collection, private readonly module: WebAssembly.Module,
-    private readonly mostVertices: number, private readonly events: ServedEvents,
+    private readonly mostVertices: number, private readonly events: ViewEvents,
   ) {
     this.shown = this.received = new Received(module);
   }
 
+  get name(): string { return this.collection.title; }
   get decoder(): Decoder { return this.shown.decoder; }
-  /** The certificates of the mesh of `decoder`. */
   get certified(): Certified { return this.shown.certified; }
-  /** Why nothing comes at the moment. */
-  waitsFor: string | undefined;
-  private failures = 0;
-  get heldBy(): 'service' | 'vertices' | null {
-    return this.isTooMuch ? 'service' : this.coarser > 1 ? 'vertices' : null;
+  get progress(): Progress {
+    const heldBy = this.isTooMuch ? 'service' : this.coarser > 1 ? 'vertices' : undefined;
+    return {
+      bytes: this.bytes, bytesInAll: 0, heldBy, waitsFor: this.waitsFor, cost: this.cost,
+      state: heldBy !== undefined ? 'held' : this.isLoading ? 'loading' : 'complete',
+    };
   }
 
   setLimit(error: number): void {
@@ -159,14 +142,8 @@ export class ServedView {
     }
   }
 
-  async answer(question: Question, frame: Frame): Promise<Answer> {
-    switch (question.kind) {
-      case 'height': return this.service.height(question.at);
-      case 'profile': return this.service.profile(question.from, question.to, frame);
-      case 'sight': return this.service.sight(question.from, question.to, question.request, frame);
-      case 'viewshed':
-        return this.service.viewshed(question.at, question.observerHeight, question.targetHeight, question.radius, frame);
-    }
+  answer(question: Question, frame: Frame): Promise<Answer> {
+    return this.service.answer(question, frame);
   }
 
   private nextWanted(): Wanted | undefined {
@@ -196,7 +173,7 @@ export class ServedView {
     try {
       // A quarter larger, and somewhat finer, so that a small move asks for nothing.
       const window = widened(wanted.window, this.collection.bounds, 1 / 8);
-      await this.receive(to, { window, error: Number((0.8 * wanted.error).toPrecision(2)) }, mostBytes);
+      await this.receive(to, { window, error: rounded(0.8 * wanted.error, 2) }, mostBytes);
       if (this.failures > 0) this.events.mended();
       this.failures = 0;
       this.waitsFor = undefined;
@@ -213,7 +190,7 @@ export class ServedView {
     const isBusy = error instanceof Problem && (error.status === 503 || error.status === 429);
     const wait = Math.min(longestWait, firstWait * 2 ** this.failures);
     this.waitsFor = isBusy ? 'the service is busy' : 'the service does not answer';
-    if (!isBusy || this.failures > 3) this.events.failed(error, false);
+    if (!isBusy || this.failures > 3) this.events.failed(error);
     ++this.failures;
     this.events.grown();
     await new Promise<void>((resolve) => { setTimeout(resolve, isBusy ? Math.max(wait, 1000 * error.retryAfter) : wait); });
@@ -253,11 +230,7 @@ export class ServedView {
   }
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
-    ++this.requests;
-    const cancel = new AbortController();
-    const { response, fingerprint, cost } = await this.service.stream(
-      wanted.window, wanted.error, mostBytes, to.have, to.fingerprint, cancel.signal);
-    await checkAnswer(response);
+    const { response, fingerprint, cost } = await this.service.stream(wanted, mostBytes, to.have, to.fingerprint);
     if (response.body === null) throw new Problem('The service answered nothing', 'The connection to it broke.');
     to.fingerprint = fingerprint;
     this.cost = cost;

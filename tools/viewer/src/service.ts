@@ -3,25 +3,21 @@
 // The endpoints of `ptin serve` that the viewer asks. Nothing else of it knows their addresses or answers.
 import { count, number } from './format';
 import type { Frame } from './frame';
-import { Problem, checkAnswer, opened } from './fetching';
-import { stationsOf } from './answers';
-import type { MapPosition, PointState, Profile, Sight, SightPoint, SightRequest } from './answers';
-import type { Answer, Certainty, Viewshed } from './messages';
+import { Problem, opened } from './fetching';
+import type { Window } from './map_window';
+import type { MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
+import type { Answer, Certainty, Question, QuestionOf, Wanted } from './messages';
+import { stationsOf } from './stations';
 
 /** What a receiver was served, as `ptin unstream` tells it and `ptin stream --have` takes it. */
-export interface Serving {
-  window?: number[];
-  error?: number;
-  levels?: number[];
-  splits?: number;
+export interface Serving extends Wanted {
+  splits: number;
 }
 
 export interface Collection {
   title: string;
-  bounds: [number, number, number, number];
+  bounds: Window;
   heights: [number, number];
-  vertices: number;
-  fingerprint: string;
 }
 
 export interface StreamAnswer {
@@ -50,39 +46,44 @@ export class Service {
   }
 
   async collection(): Promise<Collection> {
-    const json = await this.json(this.base, {});
+    const response = await opened(this.base, { headers: { Accept: 'application/json' } });
+    const json = await response.json().catch(() => {
+      throw new Problem('This is no terrain service', `What answered at ${this.base} is not JSON.`);
+    }) as Json;
     const terrain = json.terrain as Partial<Collection> | undefined;
     if (terrain?.bounds === undefined || terrain.heights === undefined) {
       throw new Problem('This is no terrain service', `What answered at ${this.base} does not describe a terrain.`);
     }
-    return {
-      title: String(json.title ?? this.id), bounds: terrain.bounds, heights: terrain.heights,
-      vertices: terrain.vertices ?? 0, fingerprint: terrain.fingerprint ?? '',
-    };
+    return { title: String(json.title ?? this.id), bounds: terrain.bounds, heights: terrain.heights };
   }
 
-  /** Asks for what `have` lacks of a window at an error. Errors of 409 and 413 say that one has to begin anew. */
-  async stream(
-    window: readonly number[] | null, error: number, mostBytes: number, have: Serving[], fingerprint: string,
-    signal: AbortSignal,
-  ): Promise<StreamAnswer> {
-    const asked: Record<string, unknown> = { error, max_bytes: mostBytes };
-    if (window !== null) asked.window = window;
+  /** Asks for what `have` lacks of `wanted`. Errors of 409 and 413 say that one has to begin anew. */
+  async stream(wanted: Wanted, mostBytes: number, have: Serving[], fingerprint: string): Promise<StreamAnswer> {
+    const asked: Json = { ...wanted, max_bytes: mostBytes };
     if (have.length !== 0) asked.have = have;
     if (have.length !== 0 && fingerprint !== '') asked.fingerprint = fingerprint;
     const response = await opened(`${this.base}/stream`, {
-      method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(asked), signal,
+      method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(asked),
     });
     return { response, fingerprint: response.headers.get('Ptin-Fingerprint') ?? fingerprint, cost: costOf(response) };
   }
 
-  /** The height of the full terrain, whatever is drawn. */
-  async height(at: MapPosition): Promise<Answer> {
-    const { json, cost } = await this.asked('position', { coords: `POINT(${at.x} ${at.y})`, crs: 'native', f: 'json' });
+  /** An answer of the full terrain, whatever is drawn. */
+  answer(question: Question, frame: Frame): Promise<Answer> {
+    switch (question.kind) {
+      case 'height': return this.height(question);
+      case 'profile': return this.profile(question, frame);
+      case 'sight': return this.sight(question, frame);
+      case 'viewshed': return this.viewshed(question, frame);
+    }
+  }
+
+  private async height(question: QuestionOf<'height'>): Promise<Answer> {
+    const { json, cost } = await this.asked('position', { coords: pointText(question.at) });
     const point = (json.points as Array<Record<string, unknown>>)[0];
     const triangle = (point.triangle as Array<[number, number, number | null]> | null) ?? [];
     return {
-      kind: 'height', at, certainty: certaintyOf(json), cost,
+      ...question, certainty: certaintyOf(json), cost,
       located: {
         state: point.state as PointState, height: point.height as number | null, least: point.height_min as number | null,
         most: point.height_max as number | null, triangle: triangle.map(([x, y, height]) => ({ x, y, height })),
@@ -90,63 +91,52 @@ export class Service {
     };
   }
 
-  async profile(from: MapPosition, to: MapPosition, frame: Frame): Promise<Answer> {
-    const { json } = await this.asked('profile', { coords: lineText(from, to), crs: 'native', f: 'json' });
-    return { kind: 'profile', from, to, profile: profileIn(json, frame), certainty: certaintyOf(json) };
+  private async profile(question: QuestionOf<'profile'>, frame: Frame): Promise<Answer> {
+    const { json } = await this.asked('profile', { coords: lineText(question) });
+    return { ...question, profile: profileIn(json, frame), certainty: certaintyOf(json) };
   }
 
-  async sight(from: MapPosition, to: MapPosition, request: SightRequest, frame: Frame): Promise<Answer> {
-    const heights = [request.observerHeight, request.targetHeight].map((metres) => metres / frame.scaleZ).join(',');
-    const query: Record<string, unknown> = { coords: lineText(from, to), heights, crs: 'native', f: 'json' };
-    if (request.frequency > 0) query.frequency = request.frequency;
+  private async sight(question: QuestionOf<'sight'>, frame: Frame): Promise<Answer> {
+    const { observerHeight, targetHeight, frequency } = question.request;
+    const coords = lineText(question), heights = [observerHeight / frame.scaleZ, targetHeight / frame.scaleZ];
     const [{ json }, along] = await Promise.all([
-      this.asked('sight', query), this.asked('profile', { coords: lineText(from, to), crs: 'native', f: 'json' }),
+      this.asked('sight', { coords, heights, ...(frequency > 0 ? { frequency } : {}) }), this.asked('profile', { coords }),
     ]);
     return {
-      kind: 'sight', from, to, request, profile: profileIn(along.json, frame),
-      sight: sightIn((json.pairs as Json[])[0]), certainty: certaintyOf(json),
+      ...question, profile: profileIn(along.json, frame), sight: sightIn((json.pairs as Json[])[0]), certainty: certaintyOf(json),
     };
   }
 
-  async viewshed(at: MapPosition, observerHeight: number, targetHeight: number, radius: number, frame: Frame): Promise<Answer> {
-    const response = await opened(this.address('viewshed', {
-      coords: `POINT(${at.x} ${at.y})`, height: observerHeight / frame.scaleZ, target: targetHeight / frame.scaleZ,
-      radius: radius / frame.scaleZ, crs: 'native', f: 'png',
-    }), {});
-    await checkAnswer(response);
+  private async viewshed(question: QuestionOf<'viewshed'>, frame: Frame): Promise<Answer> {
+    const { at, observerHeight, targetHeight, radius } = question;
+    const response = await this.answered('viewshed', 'png', {
+      coords: pointText(at), height: observerHeight / frame.scaleZ, target: targetHeight / frame.scaleZ, radius: radius / frame.scaleZ,
+    });
     const window = (response.headers.get('Ptin-Bounds') ?? '').split(',').map(Number);
     if (window.length !== 4 || window.some(Number.isNaN)) {
       throw new Problem('The viewshed has no place', 'The service did not say where its picture lies.');
     }
-    const viewshed: Viewshed = { picture: await response.blob(), window: window as Viewshed['window'] };
-    return { kind: 'viewshed', at, radius, viewshed };
+    return { ...question, viewshed: { picture: await response.blob(), window: window as unknown as Window } };
   }
 
-  private address(question: string, query: Record<string, unknown>): string {
-    const text = new URLSearchParams(Object.entries(query).map(([k, v]): [string, string] => [k, String(v)]));
-    return `${this.base}/${question}?${text}`;
+  private answered(question: string, format: string, query: Json): Promise<Response> {
+    const parameters = Object.entries({ ...query, crs: 'native', f: format }).map(([k, v]): [string, string] => [k, String(v)]);
+    return opened(`${this.base}/${question}?${new URLSearchParams(parameters)}`);
   }
 
-  private async asked(question: string, query: Record<string, unknown>): Promise<{ json: Json; cost: string }> {
-    const response = await opened(this.address(question, query), {});
-    await checkAnswer(response);
+  private async asked(question: string, query: Json): Promise<{ json: Json; cost: string }> {
+    const response = await this.answered(question, 'json', query);
     return { json: await response.json() as Json, cost: costOf(response) };
-  }
-
-  private async json(address: string, init: RequestInit): Promise<Json> {
-    const response = await opened(address, { headers: { Accept: 'application/json' }, ...init });
-    await checkAnswer(response);
-    try {
-      return await response.json() as Json;
-    } catch {
-      throw new Problem('This is no terrain service', `What answered at ${address} is not JSON.`);
-    }
   }
 }
 
 type Json = Record<string, unknown>;
 
-function lineText(from: MapPosition, to: MapPosition): string {
+function pointText(at: MapPosition): string {
+  return `POINT(${at.x} ${at.y})`;
+}
+
+function lineText({ from, to }: { from: MapPosition; to: MapPosition }): string {
   return `LINESTRING(${from.x} ${from.y}, ${to.x} ${to.y})`;
 }
 

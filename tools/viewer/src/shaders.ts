@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// How the relief is drawn. z is scaled in the vertex shader, so exaggeration costs nothing; slopes and heights are always those
-// of the terrain itself.
+// How the relief is drawn. The scene's matrix scales z, so exaggeration costs nothing; slopes and heights are always those of the
+// terrain itself.
 
 export const reliefVertex = /* glsl */ `
-uniform float exaggeration;
 varying vec3 vPlace;
 varying vec3 vNormal;
 varying float vDistance;
 void main() {
   vPlace = position;
   vNormal = normal;
-  vec4 seen = modelViewMatrix * vec4(position.xy, position.z * exaggeration, 1.0);
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
   vDistance = length(seen.xyz);
   gl_Position = projectionMatrix * seen;
 }`;
@@ -76,12 +75,13 @@ void main() {
   gl_FragColor = vec4(mix(colour, haze, 0.75 * far), 1.0);
 }`;
 
-/** Edges and marks: the same exaggeration, one colour. */
+/** Edges, bodies and marks. */
 export const lineVertex = /* glsl */ `
-uniform float exaggeration;
 uniform float lift;
+uniform float size;  // of marks, pixels of the drawing
 void main() {
-  vec4 seen = modelViewMatrix * vec4(position.xy, position.z * exaggeration, 1.0);
+  gl_PointSize = size;
+  vec4 seen = modelViewMatrix * vec4(position, 1.0);
   seen.xyz *= 1.0 - lift;
   gl_Position = projectionMatrix * seen;
 }`;
@@ -95,12 +95,11 @@ void main() { gl_FragColor = vec4(colour, opacity); }`;
 export const ribbonVertex = /* glsl */ `
 attribute vec3 other;
 attribute float turn;
-uniform float exaggeration;
 uniform float lift;
 uniform float width;   // pixels, of the drawing
 uniform vec2 picture;  // its size
 vec4 seen(vec3 p) {
-  vec4 at = modelViewMatrix * vec4(p.xy, p.z * exaggeration, 1.0);
+  vec4 at = modelViewMatrix * vec4(p, 1.0);
   at.xyz *= 1.0 - lift;
   return projectionMatrix * at;
 }
@@ -110,17 +109,6 @@ void main() {
   vec2 across = length(way) > 1e-6 ? normalize(vec2(-way.y, way.x)) : vec2(0.0);
   here.xy += across * turn * width * here.w / picture;
   gl_Position = here;
-}`;
-
-/** Marks of one size on the screen. */
-export const markVertex = /* glsl */ `
-uniform float exaggeration;
-uniform float size;
-void main() {
-  vec4 seen = modelViewMatrix * vec4(position.xy, position.z * exaggeration, 1.0);
-  seen.xyz *= 0.995;
-  gl_Position = projectionMatrix * seen;
-  gl_PointSize = size;
 }`;
 
 export const markFragment = /* glsl */ `

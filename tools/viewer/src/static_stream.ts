@@ -3,7 +3,7 @@
 // A stream in a file on any web host: read from its first byte on, once, and decoded while it arrives. What came is kept, so
 // that a coarser mesh can be made of it without the host.
 import { Decoder } from './decoder';
-import { Problem, checkAnswer, opened } from './fetching';
+import { Problem, opened } from './fetching';
 
 /** Bytes in the order in which they came, and a place in them. */
 export class KeptBytes {
@@ -121,8 +121,7 @@ export interface OpenedStream {
 }
 
 export async function openStream(url: string): Promise<OpenedStream> {
-  const response = await opened(url, {});
-  await checkAnswer(response);
+  const response = await opened(url);
   if (response.body === null) throw new Problem('The terrain is empty', 'The host answered without any bytes.');
   const packed = response.headers.get('Content-Encoding');
   const length = packed === null || packed === 'identity' ? Number(response.headers.get('Content-Length') ?? 0) : 0;

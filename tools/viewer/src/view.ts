@@ -3,8 +3,8 @@
 // Where the camera stands and what it needs: its controls, the permalink's part, and the detail that its picture shows.
 import { Box3, Frustum, Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { MapControls } from 'three/addons/controls/MapControls.js';
-import type { Window } from './certified';
 import type { Frame } from './frame';
+import { type Window, windowAround } from './map_window';
 import type { Wanted } from './messages';
 
 /** What the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
@@ -23,23 +23,34 @@ export interface Pose {
 /** Light and colours show steps that no silhouette does: so many of them are told apart in the whole relief. */
 const leastSteps = 150;
 
+const radians = Math.PI / 180;
+
 export class View {
   readonly controls: MapControls;
   private frame: Frame | null = null;
   private home: Pose | null = null;
+  private factor = 1;
+  private readonly still = matchMedia('(prefers-reduced-motion: reduce)');
 
-  constructor(readonly camera: PerspectiveCamera, canvas: HTMLCanvasElement, private readonly reducedMotion: () => boolean) {
+  constructor(readonly camera: PerspectiveCamera, canvas: HTMLCanvasElement) {
     this.controls = new MapControls(camera, canvas);
-    this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
     this.controls.zoomToCursor = true;
-    this.controls.screenSpacePanning = false;
     this.controls.maxPolarAngle = 1.5;
-    this.controls.keyPanSpeed = 40;
+  }
+
+  /** How many times as high as it is the terrain is drawn. What is looked at stays in the middle. */
+  get exaggeration(): number { return this.factor; }
+  set exaggeration(factor: number) {
+    const { target } = this.controls;
+    const rise = target.z * (factor / this.factor - 1);
+    this.factor = factor;
+    target.z += rise;
+    this.camera.position.z += rise;
   }
 
   /** `covered`: pixels at the left of the picture that something lies over. */
-  setFrame(frame: Frame, exaggeration: number, width: number, covered: number): void {
+  setFrame(frame: Frame, width: number, covered: number): void {
     this.frame = frame;
     const extent = Math.hypot(frame.width, frame.depth);
     this.controls.minDistance = extent / 5000;
@@ -48,30 +59,27 @@ export class View {
     const free = (width - covered) / width;
     for (let distance = 0.4 * extent; distance < 5 * extent; distance *= 1.05) {
       this.home = this.homeAt(frame, distance, free);
-      this.pose(this.home, exaggeration);
+      this.pose(this.home);
       this.clip(frame);
-      if (this.isWhole(frame, exaggeration, 1 - 2 * free)) break;
+      if (this.isWhole(frame, 1 - 2 * free)) break;
     }
   }
 
   private homeAt(frame: Frame, distance: number, free: number): Pose {
     const isTall = this.camera.aspect * free < 1;
-    const heading = 340;
-    // The picture's middle is that of what is not covered.
-    const aside = (1 - free) / 2 * this.metresPerPixel(distance, 1) * this.camera.aspect;
-    const turn = heading * Math.PI / 180;
-    return {
-      x: frame.middleX - Math.cos(turn) * aside / frame.scaleX, y: frame.middleY + Math.sin(turn) * aside / frame.scaleY,
-      height: frame.heightAt(0.35 * frame.relief), distance, heading, tilt: isTall ? 42 : 52,
+    const middle: Pose = {
+      x: frame.middleX, y: frame.middleY, height: frame.heightAt(0.35 * frame.relief), distance, heading: 340, tilt: isTall ? 42 : 52,
     };
+    // The picture's middle is that of what is not covered.
+    return moved(frame, middle, (free - 1) / 2 * this.metresPerPixel(distance, 1) * this.camera.aspect, 0);
   }
 
   /** True when every corner of the terrain is in the picture, right of `left` (-1: its edge). */
-  private isWhole(frame: Frame, exaggeration: number, left: number): boolean {
+  private isWhole(frame: Frame, left: number): boolean {
     this.camera.updateMatrixWorld();
     for (const x of [-frame.width / 2, frame.width / 2]) {
       for (const y of [-frame.depth / 2, frame.depth / 2]) {
-        for (const z of [0, frame.relief * exaggeration]) {
+        for (const z of [0, frame.relief * this.exaggeration]) {
           const at = new Vector3(x, y, z).project(this.camera);
           if (at.z > 1 || at.x < left + 0.02 || at.x > 0.95 || Math.abs(at.y) > 0.86) return false;
         }
@@ -80,32 +88,33 @@ export class View {
     return true;
   }
 
-  reset(exaggeration: number): void {
-    if (this.home !== null) this.pose(this.home, exaggeration);
+  reset(): void {
+    if (this.home !== null) this.pose(this.home);
   }
 
-  pose(pose: Pose, exaggeration: number): void {
+  pose(pose: Pose): void {
     const { frame } = this;
     if (frame === null) return;
-    const target = new Vector3(frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * exaggeration);
-    const heading = pose.heading * Math.PI / 180, tilt = Math.max(pose.tilt, 0.01) * Math.PI / 180;
+    // Straight from above the picture would have no direction.
+    const heading = pose.heading * radians, tilt = Math.max(pose.tilt, 0.01) * radians;
     const back = new Vector3(-Math.sin(heading) * Math.sin(tilt), -Math.cos(heading) * Math.sin(tilt), Math.cos(tilt));
-    this.controls.target.copy(target);
+    const { target } = this.controls;
+    target.set(frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * this.exaggeration);
     this.camera.position.copy(target).addScaledVector(back, pose.distance);
     this.controls.update();
   }
 
   /** The pose now. */
-  current(exaggeration: number): Pose | null {
+  get current(): Pose | null {
     const { frame } = this;
     if (frame === null) return null;
     const { target } = this.controls;
     const back = this.camera.position.clone().sub(target);
     const distance = back.length();
     return {
-      x: frame.mapX(target.x), y: frame.mapY(target.y), height: frame.heightAt(target.z / exaggeration), distance,
-      heading: (Math.atan2(-back.x, -back.y) * 180 / Math.PI + 360) % 360,
-      tilt: Math.acos(Math.max(-1, Math.min(1, back.z / distance))) * 180 / Math.PI,
+      x: frame.mapX(target.x), y: frame.mapY(target.y), height: frame.heightAt(target.z / this.exaggeration), distance,
+      heading: (Math.atan2(-back.x, -back.y) / radians + 360) % 360,
+      tilt: Math.acos(Math.max(-1, Math.min(1, back.z / distance))) / radians,
     };
   }
 
@@ -113,34 +122,44 @@ export class View {
    * Follows the controls; true while they still move. Clips the view around the terrain.
    * `groundAt`: the ground at a place of the scene, not exaggerated; null where there is none.
    */
-  update(groundAt: (x: number, y: number) => number | null, exaggeration: number): boolean {
-    this.controls.enableDamping = !this.reducedMotion();
+  update(groundAt: (x: number, y: number) => number | null): boolean {
+    this.controls.enableDamping = !this.still.matches;
     const moved = this.controls.update();
     if (this.frame !== null) {
-      this.stayAbove(groundAt, exaggeration);
+      this.stayWithin();
+      this.stayAbove(this.frame, groundAt);
       this.clip(this.frame);
     }
     return moved;
   }
 
+  /**
+   * Keeps the camera off its nearest and its farthest by more than a rounding. The controls find a distance that is beyond these by a
+   * rounding changed each time, so that the picture would be drawn for ever.
+   */
+  private stayWithin(): void {
+    const { minDistance, maxDistance, target } = this.controls;
+    this.camera.position.sub(target).clampLength(minDistance * (1 + 1e-9), maxDistance * (1 - 1e-9)).add(target);
+  }
+
   /** Lifts the camera out of the ground, and over the lowest ground beside the terrain and in voids. */
-  private stayAbove(groundAt: (x: number, y: number) => number | null, exaggeration: number): void {
+  private stayAbove(frame: Frame, groundAt: (x: number, y: number) => number | null): void {
     const { position } = this.camera;
     const least = Math.max(2e-5 * this.controls.maxDistance, 0.02 * position.distanceTo(this.controls.target));
-    if (position.z >= this.frame!.relief * exaggeration + least) return;
-    const ground = (groundAt(position.x, position.y) ?? 0) * exaggeration;
+    if (position.z >= frame.relief * this.exaggeration + least) return;
+    const ground = (groundAt(position.x, position.y) ?? 0) * this.exaggeration;
     if (position.z >= ground + least) return;
     position.z = ground + least;
     this.camera.lookAt(this.controls.target);
   }
 
   /** Which windows of the map are in the picture, or may be: whatever lies between the least and the greatest height there. */
-  seenWindows(frame: Frame, exaggeration: number): (window: Window) => boolean {
+  seenWindows(frame: Frame): (window: Window) => boolean {
     const { camera } = this;
     camera.updateMatrixWorld();
     const frustum = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
     const box = new Box3();
-    const top = frame.relief * exaggeration;
+    const top = frame.relief * this.exaggeration;
     return ([west, south, east, north]) => {
       box.min.set(frame.sceneX(west), frame.sceneY(south), 0);
       box.max.set(frame.sceneX(east), frame.sceneY(north), top);
@@ -161,64 +180,53 @@ export class View {
     camera.updateProjectionMatrix();
   }
 
-  pan(right: number, up: number): void {
-    const step = 0.12 * this.camera.position.distanceTo(this.controls.target);
-    const forward = this.controls.target.clone().sub(this.camera.position).setZ(0).normalize();
-    const sideways = new Vector3(forward.y, -forward.x, 0);
-    const move = sideways.multiplyScalar(right * step).addScaledVector(forward, up * step);
-    this.controls.target.add(move);
-    this.camera.position.add(move);
-    this.controls.update();
+  /** To the right and away from the camera: shares of the picture. */
+  pan(right: number, ahead: number): void {
+    this.change((now, frame) => moved(frame, now, 0.12 * now.distance * right, 0.12 * now.distance * ahead));
   }
 
   zoom(factor: number): void {
-    const { target, minDistance, maxDistance } = this.controls;
-    const back = this.camera.position.clone().sub(target);
-    back.setLength(Math.min(maxDistance, Math.max(minDistance, back.length() * factor)));
-    this.camera.position.copy(target).add(back);
-    this.controls.update();
+    const { minDistance, maxDistance } = this.controls;
+    this.change((now) => ({ ...now, distance: Math.min(maxDistance, Math.max(minDistance, now.distance * factor)) }));
   }
 
+  /** Degrees: the camera goes round to the left of the picture. */
   turn(degrees: number): void {
-    const back = this.camera.position.clone().sub(this.controls.target);
-    back.applyAxisAngle(new Vector3(0, 0, 1), degrees * Math.PI / 180);
-    this.camera.position.copy(this.controls.target).add(back);
-    this.controls.update();
+    this.change((now) => ({ ...now, heading: now.heading - degrees }));
   }
 
   /** Degrees: more looks farther towards the horizon. */
   tilt(degrees: number): void {
-    const back = this.camera.position.clone().sub(this.controls.target);
-    const away = Math.hypot(back.x, back.y), distance = back.length();
-    const now = Math.atan2(away, back.z);
-    const then = Math.max(0.001, Math.min(this.controls.maxPolarAngle, now + degrees * Math.PI / 180));
-    const aside = away > 1e-9 * distance ? Math.sin(then) * distance / away : 0;
-    back.set(back.x * aside, back.y * aside, Math.cos(then) * distance);
-    this.camera.position.copy(this.controls.target).add(back);
-    this.controls.update();
+    const most = this.controls.maxPolarAngle / radians;
+    this.change((now) => ({ ...now, tilt: Math.max(0, Math.min(most, now.tilt + degrees)) }));
+  }
+
+  private change(next: (now: Pose, frame: Frame) => Pose): void {
+    const { current, frame } = this;
+    if (current !== null && frame !== null) this.pose(next(current, frame));
   }
 
   /** Metres that a pixel shows at a distance, for a canvas of so many pixels in height. */
   metresPerPixel(distance: number, pixels: number): number {
-    return 2 * distance * Math.tan(this.camera.fov * Math.PI / 360) / Math.max(1, pixels);
+    return 2 * distance * Math.tan(this.camera.fov / 2 * radians) / Math.max(1, pixels);
   }
 
   /**
    * What the picture needs: for each octave of distance the part of the terrain that is at most so far, and the error that is
    * `tolerance` pixels there. The coarsest part first.
    */
-  wanted(pixels: number, tolerance: number, exaggeration: number): Wanted[] {
+  wanted(pixels: number, tolerance: number): Wanted[] {
     const { frame } = this;
     if (frame === null) return [];
-    const seen = this.seenPlaces(frame, exaggeration);
+    const seen = this.seenPlaces(frame);
     const nearest = Math.min(...seen.map((s) => s.distance));
     const farthest = Math.max(...seen.map((s) => s.distance), nearest);
     const parts: Wanted[] = [];
     for (let reach = farthest; seen.length !== 0; reach /= 2) {
       const within = seen.filter((s) => s.distance <= reach * 1.001);
-      const window = windowOf(frame, within);
+      const window = windowAround(within.map((p) => ({ x: frame.mapX(p.x), y: frame.mapY(p.y) })));
       const at = Math.max(reach / 2, nearest);
-      const error = tolerance * this.metresPerPixel(at, pixels) / exaggeration;
+      const error = tolerance * this.metresPerPixel(at, pixels) / this.exaggeration;
       parts.push({ window, error: Math.min(error, frame.relief / leastSteps) / frame.scaleZ });
       if (reach / 2 <= nearest) break;
     }
@@ -226,9 +234,9 @@ export class View {
   }
 
   /** Places of the terrain's middle height under points of the picture, and how far they are. */
-  private seenPlaces(frame: Frame, exaggeration: number): Array<{ x: number; y: number; distance: number }> {
+  private seenPlaces(frame: Frame): Array<{ x: number; y: number; distance: number }> {
     const places = [];
-    const middle = 0.4 * frame.relief * exaggeration;
+    const middle = 0.4 * frame.relief * this.exaggeration;
     const { camera } = this;
     camera.updateMatrixWorld();
     const columns = 12, rows = 12;
@@ -248,7 +256,10 @@ export class View {
   }
 }
 
-function windowOf(frame: Frame, places: Array<{ x: number; y: number }>): Wanted['window'] {
-  const xs = places.map((p) => frame.mapX(p.x)), ys = places.map((p) => frame.mapY(p.y));
-  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+/** A pose moved over the ground: metres to the right of the picture, and away from the camera. */
+function moved(frame: Frame, pose: Pose, right: number, ahead: number): Pose {
+  const sine = Math.sin(pose.heading * radians), cosine = Math.cos(pose.heading * radians);
+  return {
+    ...pose, x: pose.x + (right * cosine + ahead * sine) / frame.scaleX, y: pose.y + (ahead * cosine - right * sine) / frame.scaleY,
+  };
 }

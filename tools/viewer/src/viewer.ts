@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import { type Certified, certifiedWithin } from './certified';
+import { certifiedWithin } from './certified';
 import type { Certificate } from './decoder';
 import { scaleAt } from './earth';
-import { bytes, coordinates, metres, roundBelow } from './format';
+import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
-import { Inquiry, Tool } from './inquiry';
+import { Inquiry } from './inquiry';
+import { holds } from './map_window';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
-import { colour, part, speak, toast, trouble } from './page';
+import { colour, part, speak, toast } from './page';
 import { Panel } from './panel';
-import { Settings, fromHash, toHash } from './permalink';
+import { type Settings, fromHash, toHash } from './permalink';
 import { Relief } from './relief';
 import { View } from './view';
 
@@ -18,8 +19,10 @@ interface Boot {
   source: Source | null;
   worker: Worker | null;
   early: FromWorker[];
-  query: URLSearchParams;
-  mostVertices: number;
+  /** Has the Worker open a terrain. */
+  open(source: Source): void;
+  /** Says what went wrong. `aside`: there is a terrain, which stays in sight. */
+  trouble(title: string, message: string, aside: boolean): void;
 }
 
 /** Pixels by which a picture of a service's terrain may be off. */
@@ -34,22 +37,20 @@ class Viewer {
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate }) | null = null;
-  private isServed: boolean;
+  private readonly isServed: boolean;
   private linkTimer = 0;
   private viewTimer = 0;
   private spokenState = '';
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
-  private certified: Certified | null = null;
 
-  constructor(boot: Boot) {
+  constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
     this.worker = boot.worker!;
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
-    const still = matchMedia('(prefers-reduced-motion: reduce)');
-    this.view = new View(this.relief.camera, canvas, () => still.matches);
+    this.view = new View(this.relief.camera, canvas);
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
     this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
     part('viewshed-tool').hidden = !this.isServed;
@@ -84,10 +85,8 @@ class Viewer {
         this.isTroubled = false;
         break;
       case 'error':
-        trouble(message.title, message.message, this.frame !== null);
+        this.boot.trouble(message.title, message.message, this.frame !== null);
         this.isTroubled = true;
-        part('progress').classList.add('done');
-        if (this.frame === null) part('subtitle').textContent = 'Nothing is shown';
         break;
     }
   }
@@ -104,14 +103,13 @@ class Viewer {
     const { pose } = fromHash(location.hash);
     const { width, height } = this.relief.canvas.getBoundingClientRect();
     const card = part('card').getBoundingClientRect();
-    this.view.setFrame(frame, this.exaggeration, width, card.width < width / 2 && width > height ? card.right : 0);
-    if (pose !== null) this.view.pose(pose, this.exaggeration);
+    this.view.setFrame(frame, width, card.width < width / 2 && width > height ? card.right : 0);
+    if (pose !== null) this.view.pose(pose);
     this.moved();
   }
 
   private show(status: Status): void {
-    this.certified = status.certified;
-    this.status = { ...status, certificate: this.certificate };
+    this.status = { ...status, certificate: this.inSight(status) };
     this.showCertificate();
     if (status.state !== this.spokenState && status.state !== 'loading') {
       performance.mark('ptin-settled');
@@ -121,22 +119,19 @@ class Viewer {
   }
 
   /** The certificate of all that is in sight; before there is a terrain, of nothing. */
-  private get certificate(): Certificate {
-    const { certified, frame } = this;
-    if (certified === null || frame === null) return { error: Infinity, deviation: Infinity };
-    return certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame, this.exaggeration));
+  private inSight({ certified }: Status): Certificate {
+    const { frame } = this;
+    return frame === null ? { error: Infinity, deviation: Infinity }
+      : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
   }
 
   private showCertificate(): void {
-    const { status, certified, frame } = this;
-    if (status === null || certified === null || frame === null) return;
-    const [west, south, east, north] = frame.bounds;
-    const isEverywhere = certified.parts.some(({ window: w, error }) =>
-      w[0] <= west && w[1] <= south && w[2] >= east && w[3] >= north && error <= status.certificate.error);
-    this.panel.showStatus(status, status.certificate, isEverywhere);
+    const { status, frame } = this;
+    if (status === null || frame === null) return;
+    const { certificate, certified } = status;
+    const isEverywhere = certified.parts.some((part) => holds(part.window, frame.bounds) && part.error <= certificate.error);
+    this.panel.showStatus(status, certificate, isEverywhere);
   }
-
-  private get exaggeration(): number { return this.panel.settings.exaggeration; }
 
   /** Carries a setting out. */
   private apply(key: keyof Settings): void {
@@ -149,30 +144,19 @@ class Viewer {
       this.relief.wireframe = s.wireframe;
       this.send({ kind: 'edges', wanted: s.wireframe });
     }
-    if (key === 'exaggeration') this.setExaggeration(s.exaggeration);
+    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration;
     this.keepLink();
   }
 
-  private setExaggeration(factor: number): void {
-    const ratio = factor / this.relief.verticalScale;
-    this.relief.verticalScale = factor;
-    // What is looked at stays in the middle.
-    const { target } = this.view.controls;
-    const rise = target.z * (ratio - 1);
-    target.z += rise;
-    this.relief.camera.position.z += rise;
-  }
-
   private beforeDrawing(): boolean {
-    const moves = this.view.update((x, y) => this.relief.groundAt(x, y), this.exaggeration);
+    const moves = this.view.update((x, y) => this.relief.groundAt(x, y));
     const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
     if (this.status !== null) {
-      const { error, deviation } = this.certificate;
-      const before = this.status.certificate;
-      this.status.certificate = { error, deviation };
-      if (error !== before.error || deviation !== before.deviation) this.showCertificate();
+      const { error, deviation } = this.status.certificate;
+      const now = this.status.certificate = this.inSight(this.status);
+      if (now.error !== error || now.deviation !== deviation) this.showCertificate();
     }
     return moves;
   }
@@ -184,7 +168,7 @@ class Viewer {
     if (!this.isServed) return;
     clearTimeout(this.viewTimer);
     this.viewTimer = window.setTimeout(() => {
-      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance, this.exaggeration);
+      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance);
       this.send({ kind: 'view', wanted });
     }, 150);
   }
@@ -193,9 +177,13 @@ class Viewer {
     clearTimeout(this.linkTimer);
     this.linkTimer = window.setTimeout(() => {
       if (this.frame === null) return;
-      const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
-      history.replaceState(null, '', `${location.pathname}${location.search}#${hash}`);
+      history.replaceState(null, '', this.address);
     }, 250);
+  }
+
+  /** The address of what is shown. */
+  private get address(): string {
+    return `${location.pathname}${location.search}#${toHash(this.view.current, this.panel.settings)}`;
   }
 
   /** How long a line across the picture is where the camera looks: over ground, which the picture stretches away from its middle. */
@@ -211,7 +199,7 @@ class Viewer {
     const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
     const scale = part('scale');
     scale.querySelector('i')!.style.width = `${length * metre}px`;
-    scale.querySelector('span')!.textContent = length >= 1000 ? `${length / 1000} km` : `${Number(length.toPrecision(1))} m`;
+    scale.querySelector('span')!.textContent = length >= 1000 ? `${rounded(length / 1000, 1)} km` : `${rounded(length, 1)} m`;
   }
 
   private followPage(canvas: HTMLCanvasElement): void {
@@ -223,11 +211,11 @@ class Viewer {
     dark.addEventListener('change', recolour);
     recolour();
     canvas.addEventListener('webglcontextlost', () => {
-      trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
+      this.boot.trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
     });
     addEventListener('hashchange', () => {
       const { pose } = fromHash(location.hash);
-      if (pose !== null) this.view.pose(pose, this.exaggeration);
+      if (pose !== null) this.view.pose(pose);
       this.moved();
     });
     part('home').addEventListener('click', () => { this.home(); });
@@ -270,15 +258,13 @@ class Viewer {
   }
 
   private home(): void {
-    this.view.reset(this.exaggeration);
+    this.view.reset();
     this.moved();
   }
 
   private async copyLink(): Promise<void> {
-    const hash = toHash(this.view.current(this.exaggeration), this.panel.settings);
-    const address = `${location.origin}${location.pathname}${location.search}#${hash}`;
     try {
-      await navigator.clipboard.writeText(address);
+      await navigator.clipboard.writeText(location.origin + this.address);
       toast('The link to this view is copied');
     } catch {
       toast('The browser does not let pages copy; the address line has the link');
@@ -316,10 +302,10 @@ class Viewer {
     1: () => { this.panel.set('shading', 'height'); },
     2: () => { this.panel.set('shading', 'slope'); },
     3: () => { this.panel.set('shading', 'shade'); },
-    h: () => { this.choose('height'); },
-    p: () => { this.choose('profile'); },
-    s: () => { this.choose('sight'); },
-    v: () => { if (this.isServed) this.choose('viewshed'); },
+    h: () => { this.inquiry.choose('height'); },
+    p: () => { this.inquiry.choose('profile'); },
+    s: () => { this.inquiry.choose('sight'); },
+    v: () => { if (this.isServed) this.inquiry.choose('viewshed'); },
     l: () => { void this.copyLink(); },
     '?': () => { part<HTMLDialogElement>('keys').showModal(); },
     Enter: () => {
@@ -328,10 +314,6 @@ class Viewer {
     },
     Escape: () => { this.inquiry.close(); },
   };
-
-  private choose(tool: Tool): void {
-    this.inquiry.choose(tool);
-  }
 }
 
 /** Where no terrain was named. */
@@ -350,9 +332,7 @@ function welcome(boot: Boot): void {
     box.hidden = true;
     part('card').hidden = part('tools').hidden = false;
     boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
-    boot.worker!.postMessage({
-      kind: 'open', source: boot.source, folder: new URL('.', location.href).href, mostVertices: boot.mostVertices,
-    } satisfies ToWorker);
+    boot.open(boot.source);
     start(boot);
   };
   box.querySelector<HTMLInputElement>('input[type=file]')!.addEventListener('change', (event) => {
@@ -369,7 +349,7 @@ function start(boot: Boot): void {
   try {
     (window as unknown as { ptinViewer: Viewer }).ptinViewer = new Viewer(boot);
   } catch (error) {
-    trouble('The picture cannot be drawn', `The viewer needs WebGL 2, which this browser does not give. (${(error as Error).message})`, false);
+    boot.trouble('The picture cannot be drawn', `The viewer needs WebGL 2, which this browser does not give. (${(error as Error).message})`, false);
   }
 }
 

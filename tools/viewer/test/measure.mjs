@@ -10,7 +10,7 @@ import { tmpdir } from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { host } from './host.mjs';
+import { host, launched } from './host.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const assets = join(here, '..', 'assets');
@@ -54,13 +54,6 @@ for (const stream of process.argv.slice(2).filter((given) => !isService(given)))
   if (process.env.CHROMIUM) await inBrowser(stream, splits);
 }
 rmSync(scratch, { recursive: true });
-
-async function launched() {
-  const { chromium } = await import('playwright-core');
-  return chromium.launch({
-    executablePath: process.env.CHROMIUM, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
-  });
-}
 
 /** Milliseconds from the address being asked for to the first picture, and to the first time that nothing is awaited. */
 async function shownAfter(page, address) {

@@ -4,15 +4,16 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { type CertifiedPart, type Window, certifiedAt, certifiedWithin } from '../src/certified';
+import { type CertifiedPart, certifiedAt, certifiedWithin } from '../src/certified';
 import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
 import { earthOf, scaleAt, toldBy } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
-import { Frame, unitsOf } from '../src/frame';
+import { Frame } from '../src/frame';
+import { type Window, widened } from '../src/map_window';
 import { defaults, fromHash, toHash } from '../src/permalink';
-import { csvOf, heightAlong, runsOf } from '../src/plot';
-import { widened } from '../src/served_view';
+import { csvOf } from '../src/plot';
 import { costOf } from '../src/service';
+import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
 import { decoded, decoderModule, terrain } from './support';
 
@@ -107,11 +108,11 @@ test('a window grows by a quarter, within the terrain', () => {
 
 test('the picture has the scale of its middle parallel, and feet are feet', () => {
   const facts = {
-    originX: 10, originY: 59, stepX: 1, stepY: 1, heightIsFloat: false, heightStep: 1, heightOffset: 0, minX: 0, minY: 0, maxX: 1,
+    originX: 10, originY: 59, stepX: 1, stepY: 1, heightIsFloat: 0, heightStep: 1, heightOffset: 0, minX: 0, minY: 0, maxX: 1,
     maxY: 2, minHeight: 0, maxHeight: 100, baseError: 0, baseDeviation: 0,
   };
   const earth = {
-    isDegrees: true, lengths: { unit: 'metre', metres: 1 }, metresPerHeight: 0.3048, diameter: 12756274, size: null,
+    isDegrees: true, lengths: { unit: 'metre', metres: 1 }, metresPerHeight: 0.3048, curvature: 0, lightSpeed: 1, size: null,
     scales: [{ y: 59, x: 57000, perY: 111400 }, { y: 61, x: 54000, perY: 111420 }],
   };
   assert.deepEqual(scaleAt(earth, 60), [55500, 111410]);
@@ -169,8 +170,9 @@ test('refinement stops at a number of vertices', () => {
 test('what is drawn has upward normals, every edge once, and no void triangle', () => {
   const decoder = decoded(decoderModule(), readFileSync(terrain('coast_257', '--error', '5').stream));
   const { mesh, facts } = decoder;
-  const metadata: unknown = JSON.parse(decoder.metadata);
-  const drawn = drawnMesh(mesh, new Frame(facts, unitsOf(metadata), earthOf(decoder, toldBy(null), unitsOf(metadata))));
+  const told = toldBy(decoder.metadata);
+  decoder.describe(told.ground);
+  const drawn = drawnMesh(mesh, new Frame(facts, told.units, earthOf(decoder, told)));
   const surface = mesh.classes.reduce((n, c) => n + (c === 0 ? 1 : 0), 0);
   assert.equal(drawn.corners.length, 3 * surface);
   for (const v of drawn.corners) assert.ok(drawn.normals[4 * v + 2] > 0);

@@ -6,9 +6,10 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { MapPosition } from '../src/answers';
-import { Decoder } from '../src/decoder';
+import { type Decoder, boundsOf, onMap } from '../src/decoder';
 import { type Earth, type Told, earthOf, toldBy } from '../src/earth';
-import { unitsOf } from '../src/frame';
+import { drawnSight } from '../src/drawn_sight';
+import { Frame } from '../src/frame';
 import { DecodeError } from '../src/module';
 import { type Asked, Questions } from '../src/questions';
 import { decoded, decoderModule, file, made, ptin, questionsModule, terrain } from './support';
@@ -23,6 +24,7 @@ interface Shown {
   asked: Asked;
   told: Told;
   earth: Earth;
+  frame: Frame;
   /** A place of the terrain, and a little beyond. */
   place: (i: number) => MapPosition;
 }
@@ -33,15 +35,14 @@ function askedOf(decoder: Decoder, told: Told): Asked {
 
 function shown(store: string, streamed: string): Shown {
   const decoder = decoded(decoderModule(), readFileSync(streamed));
-  const metadata: unknown = JSON.parse(decoder.metadata);
-  const told = toldBy(metadata);
+  const told = toldBy(decoder.metadata);
   decoder.describe(told.ground);
-  const { facts } = decoder;
   const share = (n: number): number => (n * 0.6180339887498949) % 1;
-  const x = facts.originX + facts.stepX * facts.minX, y = facts.originY + facts.stepY * facts.minY;
-  const width = facts.stepX * (facts.maxX - facts.minX), depth = facts.stepY * (facts.maxY - facts.minY);
+  const [x, y, east, north] = boundsOf(decoder.facts);
+  const width = east - x, depth = north - y;
+  const earth = earthOf(decoder, told);
   return {
-    store, decoder, asked: askedOf(decoder, told), told, earth: earthOf(decoder, told, unitsOf(metadata)),
+    store, decoder, asked: askedOf(decoder, told), told, earth, frame: new Frame(decoder.facts, told.units, earth),
     place: (i) => ({
       x: Number((x + (1.02 * share(i) - 0.01) * width).toPrecision(9)), y: Number((y + (1.02 * share(i * 7.31) - 0.01) * depth).toPrecision(9)),
     }),
@@ -119,6 +120,17 @@ for (const [name, of] of terrains) {
         assert.ok(!['visible', 'hidden'].includes(told.verdict), told.verdict);
         continue;
       }
+      // The line that is drawn goes through the points that the engine names.
+      const request = { observerHeight: 40 * t.frame.scaleZ, targetHeight: 60 * t.frame.scaleZ, frequency: 450e6 };
+      const profile = { ...questions.profile(asked, a, b), lengths: t.earth.lengths };
+      const drawn = drawnSight({ request, sight: here, profile }, t.frame);
+      assert.ok(here.clearance !== null || here.verdict !== 'visible', 'a visible line has a clearance');
+      if (here.clearance !== null) {
+        const { distance, height } = here.clearance.at;
+        assert.ok(Math.abs(drawn.at(distance / here.length) - height) < 1e-3, `${drawn.at(distance / here.length)} for ${height}`);
+      }
+      const half = Math.sqrt(299792458 / 450e6 * here.length * t.frame.scaleZ) / 2;
+      assert.ok(Math.abs(drawn.radius(0.5) * t.frame.scaleZ - half) < 1e-6);
       ++decided;
       assert.equal(here.verdict, told.verdict);
       if (here.clearance === null || told.clearance === null) continue;
@@ -130,9 +142,8 @@ for (const [name, of] of terrains) {
 
   test(`the size of the terrain is that of the program's lines: ${name}`, () => {
     const { facts } = decoder;
-    const x = (grid: number): number => facts.originX + facts.stepX * grid, y = (grid: number): number => facts.originY + facts.stepY * grid;
     const middle = (facts.minY + facts.maxY) / 2;
-    const across = line({ x: x(facts.minX), y: y(middle) }, { x: x(facts.maxX), y: y(middle) });
+    const across = line(onMap(facts, facts.minX, middle), onMap(facts, facts.maxX, middle));
     const told = JSON.parse(ptin('profile', store, '--line', across, '--json')) as { points: Array<{ distance: number }> };
     const length = told.points[told.points.length - 1].distance;
     assert.ok(Math.abs((t.earth.size as [number, number])[0] - length) < 1e-3);
@@ -141,7 +152,7 @@ for (const [name, of] of terrains) {
 
 test('without metadata on the ground no length is known', () => {
   const t = terrains[1][1]();
-  const earth = earthOf(t.decoder, { ground: null, freeOfVoids: false, request: {} }, { horizontal: 'degree', height: 'metre' });
+  const earth = earthOf(t.decoder, toldBy({ units: { horizontal: 'degree', height: 'metre' } }));
   assert.equal(earth.size, null);
 });
 
@@ -154,7 +165,7 @@ test('a line around the Earth has no length here', () => {
 test('questions are of the mesh as it is now, of whichever decoder', () => {
   const bytes = readFileSync(plane.stream);
   const half = decoded(decoderModule(), bytes.subarray(0, bytes.length / 2)), whole = decoded(decoderModule(), bytes);
-  const told = toldBy(JSON.parse(whole.metadata));
+  const told = toldBy(whole.metadata);
   const { place } = terrains[0][1]();
   const heights = (decoder: Decoder, by = questions): Array<number | null> =>
     Array.from({ length: 20 }, (_, i) => by.locate(askedOf(decoder, told), place(i)).height);

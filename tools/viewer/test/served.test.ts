@@ -6,21 +6,20 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { certifiedAt } from '../src/certified';
 import { Problem } from '../src/fetching';
+import { type Window, widened } from '../src/map_window';
 import type { Wanted } from '../src/messages';
 import type { Collection, Service, Serving, StreamAnswer } from '../src/service';
 import { ServedView } from '../src/served_view';
 import { decoderModule, file, ptin, terrain } from './support';
 
-interface Asked {
-  window: readonly number[] | null;
-  error: number;
+interface Asked extends Wanted {
   have: Serving[];
 }
 
 const { store } = terrain('mountains_257');
 const info = JSON.parse(ptin('info', store, '--json')) as { bounds: { min_x: number; min_y: number; max_x: number; max_y: number } };
-const bounds: Wanted['window'] = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
-const collection: Collection = { title: 'm', bounds, heights: [633, 1576], vertices: 66049, fingerprint: 'f' };
+const bounds: Window = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
+const collection: Collection = { title: 'm', bounds, heights: [633, 1576] };
 
 /** A view of the terrain, and what was asked for it. `refuses` may throw before an answer. */
 function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number) => void = () => undefined): {
@@ -30,12 +29,12 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
   const faults: unknown[] = [];
   let wake: (() => void) | null = null;
   const service = {
-    async stream(window: readonly number[] | null, error: number, mostBytes: number, have: Serving[]): Promise<StreamAnswer> {
-      asked.push({ window, error, have: have.map((h) => ({ ...h })) });
+    async stream(wanted: Wanted, mostBytes: number, have: Serving[]): Promise<StreamAnswer> {
+      asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
       refuses(asked[asked.length - 1], mostBytes);
       const more = have.length === 0 ? [] : ['--have', JSON.stringify(have)];
-      const part = window === null ? [] : ['--window', ...window.map(String)];
-      ptin('stream', store, '--error', String(error), ...part, ...more, '-o', file('served.ptins'), '--overwrite');
+      ptin('stream', store, '--error', String(wanted.error), '--window', ...wanted.window.map(String), ...more,
+        '-o', file('served.ptins'), '--overwrite');
       return { response: new Response(readFileSync(file('served.ptins'))), fingerprint: 'f', cost: '' };
     },
   };
@@ -46,10 +45,7 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
   return { view, asked, faults, settled };
 }
 
-const middle: Wanted['window'] = [
-  bounds[0] + 0.4 * (bounds[2] - bounds[0]), bounds[1] + 0.4 * (bounds[3] - bounds[1]),
-  bounds[0] + 0.6 * (bounds[2] - bounds[0]), bounds[1] + 0.6 * (bounds[3] - bounds[1]),
-];
+const middle = widened(bounds, bounds, -0.4);
 const near: Wanted[] = [{ window: bounds, error: 20 }, { window: middle, error: 1 }];
 
 test('a service that is busy is asked again when it wants to be, and nobody is troubled', async () => {
@@ -113,7 +109,7 @@ test('detail comes where the camera looks, once', async () => {
   view.setView([near[0], { window: middle, error: 1.1 }]);
   await settled();
   assert.equal(asked.length, requests, 'nothing is asked for twice');
-  assert.equal(view.heldBy, null);
+  assert.equal(view.progress.heldBy, undefined);
   assert.deepEqual(faults, []);
 });
 
@@ -130,7 +126,7 @@ test('the budget of vertices is kept: by leaving what is not looked at, then by 
   const { view, asked, settled } = served(9000);
   void view.run();
   await settled();
-  const corner = (i: number, j: number): Wanted['window'] => {
+  const corner = (i: number, j: number): Window => {
     const [x, y] = [(bounds[2] - bounds[0]) / 4, (bounds[3] - bounds[1]) / 4];
     return [bounds[0] + i * x, bounds[1] + j * y, bounds[0] + (i + 1) * x, bounds[1] + (j + 1) * y];
   };
@@ -143,7 +139,7 @@ test('the budget of vertices is kept: by leaving what is not looked at, then by 
   view.setView([{ window: bounds, error: 0.5 }]);
   await settled();
   assert.ok(view.decoder.mesh.vertexCount <= 9000);
-  assert.equal(view.heldBy, 'vertices');
+  assert.equal(view.progress.heldBy, 'vertices');
 });
 
 test('refusals are mended: a replaced file begins anew, too much becomes less', async () => {
@@ -163,6 +159,6 @@ test('refusals are mended: a replaced file begins anew, too much becomes less', 
   assert.ok(view.decoder.certificate.error <= 5);
   view.setView([{ window: bounds, error: 5 }, { window: middle, error: 1 }]);
   await settled();
-  assert.equal(view.heldBy, 'service');
+  assert.equal(view.progress.heldBy, 'service');
   assert.deepEqual(faults, []);
 });

@@ -2,11 +2,12 @@
 //
 // What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { Decoder, Facts, MeshView, triangleWords, vertexWords } from '../src/decoder';
+import { Decoder, type Facts, onMap } from '../src/decoder';
 import { heightOf } from '../src/frame';
+import { type MeshView, triangleWords, vertexWords } from '../src/mesh';
 
 /** The program that was built, and the small terrains of tests/data. */
 export const program = process.env.PTIN_PROGRAM ?? '';
@@ -24,12 +25,27 @@ export function ptin(...parts: string[]): string {
   return execFileSync(program, parts, { encoding: 'utf8', maxBuffer: 1 << 28, stdio: ['ignore', 'pipe', 'ignore'] });
 }
 
-/** The path of a terrain, built once, and that of its stream. */
+/** A terrain of tests/data, and its stream. */
 export function terrain(name: string, ...options: string[]): { store: string; stream: string } {
+  return built(join(data, `${name}.tif`), name, [], options);
+}
+
+/** The store of an input, built once, and its stream. */
+function built(input: string, name: string, forBuild: string[], forStream: string[]): { store: string; stream: string } {
   const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
-  ptin('build', join(data, `${name}.tif`), '-q', '-o', store, '--overwrite');
-  ptin('stream', store, ...options, '-o', stream, '--overwrite');
+  if (!existsSync(store)) ptin('build', input, ...forBuild, '-q', '-o', store);
+  ptin('stream', store, ...forStream, '-o', stream, '--overwrite');
   return { store, stream };
+}
+
+/** The store of a text grid of square cells, and its stream. */
+export function gridded(
+  name: string, crs: string, corner: readonly [number, number], cell: number, rows: string[][], ...options: string[]
+): { store: string; stream: string } {
+  const path = file(`${name}.asc`);
+  writeFileSync(path, [`ncols ${rows[0].length}`, `nrows ${rows.length}`, `xllcorner ${corner[0]}`, `yllcorner ${corner[1]}`,
+    `cellsize ${cell}`, 'NODATA_value -9999', ...rows.map((row) => row.join(' '))].join('\n') + '\n');
+  return built(path, name, ['--a-srs', crs], options);
 }
 
 function moduleOf(name: string): WebAssembly.Module {
@@ -56,10 +72,11 @@ function told(corners: Corner[]): string {
 
 /** The surface's triangles, corner by corner on the map, sorted. */
 export function trianglesOf(mesh: MeshView, facts: Facts): string[] {
-  const corner = (v: number): Corner => [
-    facts.originX + facts.stepX * mesh.vertices[v * vertexWords],
-    facts.originY + facts.stepY * mesh.vertices[v * vertexWords + 1], heightOf(facts, mesh.vertices[v * vertexWords + 2]),
-  ];
+  const corner = (v: number): Corner => {
+    const [gridX, gridY, height] = mesh.vertices.subarray(v * vertexWords);
+    const { x, y } = onMap(facts, gridX, gridY);
+    return [x, y, heightOf(facts, height)];
+  };
   const all: string[] = [];
   for (let t = 0; t < mesh.triangleCount; ++t) {
     if (mesh.classes[t] === 0) all.push(told([0, 1, 2].map((i) => corner(mesh.triangles[t * triangleWords + i]))));
@@ -90,21 +107,15 @@ export function hill(row: number, column: number): number {
   return 600 + 500 * Math.sin(row / 9) * Math.cos(column / 11) + 60 * Math.sin(row * 1.7 + column * 2.3);
 }
 
-/** A terrain of hills from a small text grid, built once, and its stream: over degrees of five parallels; with heights in feet over metres; with voids. */
+/** Hills on a small grid, and their stream: over degrees of five parallels; with heights in feet over metres; with voids. */
 export function made(name: 'degrees' | 'feet' | 'voids', ...options: string[]): { store: string; stream: string } {
   const size = 121;
-  const isDegrees = name === 'degrees';
   const height = (row: number, column: number): string => {
     if (name === 'voids' && Math.hypot(row - 40, column - 70) < 18) return '-9999';
     return (name === 'feet' ? hill(row, column) / 0.3048 : hill(row, column)).toFixed(1);
   };
-  const rows = Array.from({ length: size }, (_, r) => Array.from({ length: size }, (_, c) => height(r, c)).join(' '));
-  const corner = isDegrees ? [86, 25] : [400000, 5000000];
-  writeFileSync(file(`${name}.asc`), [`ncols ${size}`, `nrows ${size}`, `xllcorner ${corner[0]}`, `yllcorner ${corner[1]}`,
-    `cellsize ${isDegrees ? 0.04 : 50}`, 'NODATA_value -9999', ...rows].join('\n') + '\n');
+  const rows = Array.from({ length: size }, (_, r) => Array.from({ length: size }, (_, c) => height(r, c)));
   const crs = { degrees: 'EPSG:4326', feet: 'EPSG:32632+6360', voids: 'EPSG:32632' }[name];
-  const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
-  ptin('build', file(`${name}.asc`), '--a-srs', crs, '-q', '-o', store, '--overwrite');
-  ptin('stream', store, ...options, '-o', stream, '--overwrite');
-  return { store, stream };
+  if (name === 'degrees') return gridded(name, crs, [86, 25], 0.04, rows, ...options);
+  return gridded(name, crs, [400000, 5000000], 50, rows, ...options);
 }

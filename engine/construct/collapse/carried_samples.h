@@ -13,11 +13,11 @@
 namespace ptin {
 
 /// Carried samples of a triangle that is pushed up.
-inline constexpr std::size_t kWitnessesOfTriangle = 16;
+inline constexpr std::size_t kCarriedSamples = 16;
 /// The least and the greatest limit of samples of a triangle while a tile of carried samples is
 /// collapsed. Without a limit the few coarse fans at the end would hold those of all.
-inline constexpr std::size_t kWitnessesInWork = 32;
-inline constexpr std::size_t kMostWitnessesInWork = 1024;
+inline constexpr std::size_t kCarriedInWork = 32;
+inline constexpr std::size_t kMostCarriedInWork = 1024;
 
 /// Cuts the samples of a triangle down to at most `most`, the weightiest ones, spread over its
 /// corners and over both signs. The weight of a sample with a height in a surface triangle is its
@@ -26,7 +26,7 @@ inline constexpr std::size_t kMostWitnessesInWork = 1024;
 /// show a parent what a surface over them would cost. A block counts as its first sample. Carried
 /// samples order the collapses of the parent and bound nothing: tightening does
 /// (construct/hierarchy/tighten.h). Deterministic. Cost: n log n. REQUIRES: most >= 6.
-void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
-                      std::size_t most = kWitnessesOfTriangle);
+void choose_carried_samples(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
+                            std::size_t most = kCarriedSamples);
 
 }  // namespace ptin

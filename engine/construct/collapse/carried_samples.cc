@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/collapse/witness.h"
+#include "engine/construct/collapse/carried_samples.h"
 
 #include <algorithm>
 #include <array>
@@ -95,8 +95,8 @@ std::vector<Candidate>::iterator heaviest_of_places(std::vector<Candidate>& cand
 
 }  // namespace
 
-void choose_witnesses(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
-                      std::size_t most) {
+void choose_carried_samples(const Tile& tile, TriangleId t, std::vector<Sample>& samples,
+                            std::size_t most) {
   for (Sample& s : samples) {
     s.side_log = 0;
   }

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A terrain whose stream comes from a file: all of it, as far as the error and the number of vertices go. Questions are answered
+// from the mesh that is there, within its certificate: all numbers are the engine's.
+import type { MapPosition } from './answers';
+import { type Certified, certifiedAt } from './certified';
+import { type Decoder, boundsOf } from './decoder';
+import { type Told, toldBy } from './earth';
+import { Problem, moduleAt } from './fetching';
+import type { Frame } from './frame';
+import type { Answer, Certainty, Progress, Question, Wanted } from './messages';
+import { type Asked, Questions } from './questions';
+import { type OpenedStream, StaticStream } from './static_stream';
+import type { TerrainView, ViewEvents } from './terrain_view';
+
+export class FileView implements TerrainView {
+  private readonly still: StaticStream;
+  private bytesInAll = 0;
+  /** Nothing more comes. */
+  private arrived = false;
+  /** All that arrived is applied, too. */
+  private isSettled = false;
+  private hasFailed = false;
+  private wake: (() => void) | null = null;
+  private metadata: Told | null = null;
+  private questions: Promise<Questions> | null = null;
+
+  /** @param folder  The address below which the viewer's files lie. */
+  constructor(
+    readonly name: string, private readonly opening: Promise<OpenedStream>, module: WebAssembly.Module,
+    private readonly folder: string, mostVertices: number, private readonly events: ViewEvents,
+  ) {
+    this.still = new StaticStream(module, { error: 0, mostVertices });
+  }
+
+  get decoder(): Decoder { return this.still.decoder; }
+
+  get certified(): Certified {
+    const { decoder } = this;
+    const { window, levels } = this.told.request;
+    // A stream for isolines is certified along these alone.
+    const parts = levels === undefined ? [{ window: window ?? boundsOf(decoder.facts), ...decoder.certificate }] : [];
+    return { parts, otherwise: decoder.certificateByRelief };
+  }
+
+  get progress(): Progress {
+    const { heldBy } = this.still;
+    return {
+      bytes: this.still.kept.bytes, bytesInAll: this.bytesInAll, heldBy: heldBy ?? undefined,
+      state: this.hasFailed ? 'damaged' : this.decoder.isComplete ? 'complete'
+        : heldBy !== null ? 'held' : this.isSettled ? 'cut' : 'loading',
+    };
+  }
+
+  async run(): Promise<void> {
+    const { reader, bytesInAll } = await this.opening;
+    this.bytesInAll = bytesInAll;
+    void this.receive(reader);
+    await this.follow();
+  }
+
+  setLimit(error: number): void {
+    if (!this.hasFailed) this.still.setError(error);
+    this.wake?.();
+  }
+
+  /** A file has one stream, wherever the camera looks. */
+  setView(_wanted: Wanted[]): void {}
+
+  async answer(question: Question, frame: Frame): Promise<Answer> {
+    if (question.kind === 'viewshed') {
+      throw new Problem('Nobody can be asked', 'A viewshed needs a service; this terrain comes from a file.');
+    }
+    const questions = await this.fetchQuestions();
+    // The mesh may have grown while the module came: the question is of the mesh of now.
+    const { certainty, ...asked } = this.askedAt(question.kind === 'height' ? [question.at] : [question.from, question.to]);
+    if (question.kind === 'height') return { ...question, located: questions.locate(asked, question.at), certainty };
+    if (asked.ground === null && frame.isDegrees) {
+      throw new Problem('No lengths', 'Lengths are not known: this stream was written by a program that did not tell its ellipsoid.');
+    }
+    const { from, to } = question;
+    const profile = { ...questions.profile(asked, from, to), lengths: frame.earth.lengths };
+    if (question.kind === 'profile') return { ...question, profile, certainty };
+    const { observerHeight, targetHeight, frequency } = question.request;
+    const sight = questions.sight(asked, from, observerHeight / frame.scaleZ, to, targetHeight / frame.scaleZ, frequency);
+    return { ...question, sight, profile, certainty };
+  }
+
+  /** What the metadata tell, once they are there. */
+  private get told(): Told {
+    return this.metadata ??= toldBy(this.decoder.metadata);
+  }
+
+  /** Reads what the host sends, unless what is there is enough: then it waits, and so does the host. */
+  private async receive(reader: ReadableStreamDefaultReader<Uint8Array>): Promise<void> {
+    try {
+      for (;;) {
+        while (this.still.heldBy !== null && !this.hasFailed) {
+          await new Promise<void>((resolve) => { setTimeout(resolve, 100); });
+        }
+        const { done, value } = await reader.read();
+        if (done || this.hasFailed) break;
+        this.still.kept.add(value);
+        this.wake?.();
+      }
+    } catch { /* A connection that broke leaves what came. */ }
+    this.arrived = true;
+    this.wake?.();
+    if (this.hasFailed) await reader.cancel().catch(() => undefined);
+  }
+
+  /** Applies what arrives. */
+  private async follow(): Promise<void> {
+    for (;;) {
+      let more = false;
+      try {
+        more = this.still.apply(40);
+      } catch (error) {
+        // What came whole before the damage is shown, though the damage was met before anything was.
+        this.hasFailed = true;
+        this.events.settled();
+        throw error;
+      }
+      this.isSettled = this.arrived && !more;
+      if (this.isSettled || (!more && this.still.heldBy !== null)) this.events.settled();
+      else this.events.grown();
+      if (this.isSettled && !this.decoder.hasMesh) {
+        throw new Problem('The stream ends too early', 'Its first part, without which nothing can be shown, is not whole.');
+      }
+      // Messages of the page come in between two pieces of work.
+      await new Promise<void>((resolve) => {
+        if (more) setTimeout(resolve, 0);
+        else this.wake = resolve;
+      });
+      this.wake = null;
+    }
+  }
+
+  /** The module of questions, which comes when something is asked; one that could not be had is asked for again. */
+  private fetchQuestions(): Promise<Questions> {
+    const coming = this.questions ??= moduleAt(this.folder, 'questions.wasm').then((module) => new Questions(module));
+    coming.catch(() => { this.questions = null; });
+    return coming;
+  }
+
+  /** What is asked at places of the mesh that is there. */
+  private askedAt(places: readonly MapPosition[]): Asked & { certainty: Certainty } {
+    const { decoder } = this;
+    const { ground, freeOfVoids, request: { error, window, levels, splits } } = this.told;
+    const isAll = error === undefined && window === undefined && levels === undefined && splits === undefined;
+    const certificate = certifiedAt(this.certified, places);
+    const isCertified = certificate.deviation < decoder.certificateByRelief.deviation;
+    return {
+      decoder, ground, freeOfVoids, isWhole: isAll && decoder.isComplete, certificate: isCertified ? certificate : null,
+      certainty: { ...certificate, of: 'mesh', isExact: isCertified && certificate.deviation === 0 },
+    };
+  }
+}

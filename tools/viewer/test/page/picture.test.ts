@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The picture, the camera over it, and the page around it.
+import assert from 'node:assert/strict';
+import { cpSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { gridded } from '../support';
+import { complete, fast, lastLink, onPage, phone, quick, rested, site, text, until } from './browser';
+
+test('triangles, isolines and colours change the picture', () => onPage(`${fast.url}#error=20`, async (page) => {
+  await complete(page);
+  let before = await page.screenshot();
+  for (const key of ['w', 'i', '2', '3', '1']) {
+    await page.keyboard.press(key);
+    await rested(page);
+    const now = await page.screenshot();
+    assert.ok(!now.equals(before), `${key} changes the picture`);
+    before = now;
+  }
+  assert.ok(await page.isChecked('#wireframe'));
+  assert.match(page.url(), /wireframe=1/);
+  assert.match(page.url(), /interval=\d/);
+}));
+
+test('a link brings the same view', async () => {
+  const numbers = (url: string): number[] => new URLSearchParams(new URL(url).hash.slice(1)).get('at')!.split(',').map(Number);
+  let link = '';
+  await onPage(`${fast.url}#error=20`, async (page) => {
+    await complete(page);
+    for (const key of ['ArrowUp', 'ArrowLeft', '+', '+', '.']) await page.keyboard.press(key);
+    link = await lastLink(page);
+    assert.match(link, /#at=/);
+  });
+  await onPage(link, async (page) => {
+    await complete(page);
+    const [first, second] = [numbers(link), numbers(await lastLink(page))];
+    first.forEach((n, i) => { assert.ok(Math.abs(n - second[i]) <= 2e-3 * Math.abs(n), `${first} ${second}`); });
+  });
+});
+
+test('nothing is wider than a phone, and axe finds no serious fault', async () => {
+  for (const screen of [phone, quick, { ...quick, colorScheme: 'dark' as const }]) {
+    await onPage(`${fast.url}#error=20`, async (page) => {
+      await complete(page);
+      await page.keyboard.press('p');
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      const over = await page.evaluate(() => [...document.querySelectorAll('button, input, label')].filter((e) => {
+        const box = e.getBoundingClientRect();
+        return box.width > 1 && box.height > 1 && (box.left < -1 || box.right > innerWidth + 1);
+      }).map((e) => e.outerHTML.slice(0, 80)));
+      assert.deepEqual(over, []);
+      await page.addScriptTag({ path: process.env.PTIN_AXE });
+      const found = await page.evaluate(async () => {
+        const { axe } = window as unknown as {
+          axe: { run(): Promise<{ violations: Array<{ id: string; impact: string; nodes: Array<{ html: string }> }> }> };
+        };
+        return (await axe.run()).violations.filter((v) => ['serious', 'critical'].includes(v.impact))
+          .map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 120)).join(' | ')}`);
+      });
+      assert.deepEqual(found, []);
+    }, { screen });
+  }
+});
+
+test('a terrain of 800 km fills the picture as a small one does', async () => {
+  const heights = Array.from({ length: 40 }, (_, row) =>
+    Array.from({ length: 40 }, (_, c) => (500 + 300 * Math.sin(c / 4) * Math.cos(row / 5)).toFixed(2)));
+  cpSync(gridded('wide', 'EPSG:3413', [0, 0], 20000, heights).stream, join(site, 'wide.ptins'));
+  await onPage(`${fast.url}?stream=wide.ptins`, async (page) => {
+    await complete(page);
+    const away = await page.evaluate(() => window.ptinViewer.relief.camera.position.length());
+    assert.ok(away < 3e6, `${away} m`);
+  });
+});
+
+test('the camera stays above the ground', () => onPage(`${fast.url}#error=20`, async (page) => {
+  await complete(page);
+  await page.mouse.move(640, 380);
+  const above = (): Promise<number> => page.evaluate(() => {
+    const { relief } = window.ptinViewer;
+    const { x, y, z } = relief.camera.position;
+    return z - (relief.groundAt(x, y) ?? 0);
+  });
+  for (let i = 0; i < 40; ++i) await page.mouse.wheel(0, -240);
+  await rested(page);
+  for (let i = 0; i < 20; ++i) {
+    await page.keyboard.press('PageDown');
+    await page.keyboard.press('ArrowUp');
+  }
+  await rested(page);
+  assert.ok(await above() > 0);
+  await page.mouse.down({ button: 'right' });
+  await page.mouse.move(640, 100, { steps: 5 });
+  await page.mouse.up({ button: 'right' });
+  await rested(page);
+  assert.ok(await above() > 0);
+}, { screen: { ...quick, reducedMotion: 'no-preference' } }));
+
+test('keys tilt, leave no ring, and the pointer costs nothing while it moves', () => onPage(`${fast.url}#error=5`, async (page) => {
+  await complete(page);
+  const tilt = (): Promise<number> => page.evaluate(() => window.ptinViewer.view.current.tilt);
+  await page.mouse.click(640, 380);
+  await page.keyboard.press('PageDown');
+  const low = await tilt();
+  await page.keyboard.press('PageUp');
+  assert.ok(Math.abs(low - await tilt() - 5) < 0.1);
+  assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('relief')!).boxShadow), 'none');
+  assert.notEqual(await text(page, '#scale'), '');
+  await page.evaluate(() => {
+    const w = window as unknown as { picks: number };
+    const { relief } = window.ptinViewer;
+    const pick = relief.pick.bind(relief);
+    w.picks = 0;
+    document.getElementById('place')!.textContent = '';
+    relief.pick = (x, y) => { ++w.picks; return pick(x, y); };
+    // A pointer moves without a rest.
+    for (let i = 0; i < 15; ++i) {
+      const move = { clientX: 500 + 10 * i, clientY: 380, pointerType: 'mouse', bubbles: true };
+      document.getElementById('relief')!.dispatchEvent(new PointerEvent('pointermove', move));
+    }
+  });
+  await until(page, () => document.getElementById('place')!.textContent !== '');
+  assert.equal(await page.evaluate(() => (window as unknown as { picks: number }).picks), 1);
+}));
