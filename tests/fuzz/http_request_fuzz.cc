@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/fuzz/fuzz_target.h"
+#include "tools/ask/questions.h"
 #include "tools/http/etag.h"
 #include "tools/http/gzip.h"
 #include "tools/http/problem.h"
@@ -29,15 +30,24 @@ void attempt(const Read& read) {
   }
 }
 
+/// Reads the parameters of a question of one kind where the service takes them.
+template <class Asked>
+void read_as(const ptin::serve::Question& q) {
+  Asked asked;
+  ptin::ask::Parameters rows;
+  add_question(rows, asked);
+  rows.keep(ptin::ask::Door::kService);
+  attempt([&] { q.read(rows); });
+}
+
 void read_everything(const ptin::serve::Question& q) {
-  for (const char* name : {"error", "vertices", "interval", "level", "bbox"}) {
-    attempt([&] { static_cast<void>(q.number(name)); });
-    attempt([&] { static_cast<void>(q.count(name)); });
-    attempt([&] { static_cast<void>(q.numbers(name)); });
-    attempt([&] { static_cast<void>(q.flag(name)); });
-  }
-  attempt([&] { static_cast<void>(q.detail()); });
-  attempt([&] { static_cast<void>(q.bbox()); });
+  read_as<ptin::LocateRequest>(q);
+  read_as<ptin::ProfileRequest>(q);
+  read_as<ptin::ask::SightQuestion>(q);
+  read_as<ptin::ask::ViewshedQuestion>(q);
+  read_as<ptin::ask::IsolineQuestion>(q);
+  read_as<ptin::ask::HighestQuestion>(q);
+  read_as<ptin::ask::VolumeQuestion>(q);
   attempt([&] { static_cast<void>(q.json("have")); });
   attempt([&] { static_cast<void>(ptin::serve::decode_polyline(q.text("locations"))); });
   for (const char* name : {"coords", "f"}) {
