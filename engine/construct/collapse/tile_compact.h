@@ -18,8 +18,8 @@ inline constexpr std::size_t kAllSamples = std::numeric_limits<std::size_t>::max
 /// triangles keep their order, so that whatever is decided by it stays the same. Records are not
 /// touched.
 /// @param most_samples  Longer lists are cut down to their weightiest samples
-///     (construct/collapse/carried_samples.h), and all lists move up in place. With kAllSamples no list is
-///     cut, and lay_out_samples() is called instead.
+///     (construct/collapse/carried_samples.h), and all lists move up in place. With kAllSamples no
+///     list is cut, and lay_out_samples() is called instead.
 /// @return  The new index of each former vertex; kNone for a removed one.
 /// Cost: linear; unless most_samples is kAllSamples, n log n in the number of lists besides.
 Renumbering compact(Tile& tile, std::size_t most_samples);

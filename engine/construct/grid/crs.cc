@@ -12,6 +12,7 @@
 
 #include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/grid/plain_datum.h"
 #include "engine/construct/grid/vertical_part.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
@@ -270,7 +271,7 @@ std::string wkt2_of(const OGRSpatialReference& srs) {
   static constexpr const char* kOptions[] = {"FORMAT=WKT2_2019", "MULTILINE=NO", nullptr};
   const bool is_written = srs.exportToWkt(&text, kOptions) == OGRERR_NONE && text != nullptr;
   const Handle<char, &VSIFree> kept(text);
-  return is_written ? text : "";
+  return is_written ? with_plain_datums(text) : "";
 }
 
 Crs resolve_source_crs(const DeclaredTexts& declared, const SourceOptions& options,

@@ -16,7 +16,8 @@ class OGRSpatialReference;
 
 namespace ptin {
 
-/// A CRS as WKT2:2019 on one line; "" where it cannot be written so.
+/// A CRS as WKT2:2019 on one line, its datums plain ones (plain_datum.h); "" where it cannot be
+/// written so.
 [[nodiscard]] std::string wkt2_of(const OGRSpatialReference& srs);
 
 /// The texts by which a source declares its CRS; "" for none.

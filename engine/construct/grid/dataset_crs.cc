@@ -84,8 +84,10 @@ void warn_of_shift(const std::string& text, const std::string& path, SourceWarni
   const std::size_t comma = name == std::string::npos ? name : text.find(',', name);
   const std::size_t begin = text.find_first_not_of(", ", comma);
   const std::string number =
-      begin == std::string::npos ? "" : text.substr(begin, text.find(']', begin) - begin);
-  std::string_view beginning = number;  // WKT 2 has a unit behind it
+      begin == std::string::npos  // WKT2 has a comma and a unit behind the number
+          ? ""
+          : text.substr(begin, text.find_first_of(",]", begin) - begin);
+  std::string_view beginning = number;
   if (take_number<double>(beginning).value_or(0.0) != 0.0) {
     warnings.add({"crs_vertical_shift",
                   "its vertical CRS shifts heights by " + number +
