@@ -101,6 +101,13 @@ class RefusedMemory : public ::testing::Test {
     return outcome;
   }
 
+  /// The allocations of a command that none is refused.
+  void count_allocations(const Arguments& command, std::int64_t& all) {
+    ASSERT_EQ(ran(command, 0, false).status, 0) << read_file(file("err"));
+    std::memcpy(&all, read_file(file("counted")).data(), sizeof all);
+    ASSERT_GT(all, 1000);
+  }
+
   /// Sentences of the program; its libraries may have said something, too.
   static int sentences_in(const std::string& err) {
     int count = 0;
@@ -112,11 +119,9 @@ class RefusedMemory : public ::testing::Test {
   /// What must hold of a command that writes `name`.
   void expect_whole_or_nothing(const Arguments& command, const std::string& name, int strides) {
     std::filesystem::remove(output(name));
-    ASSERT_EQ(ran(command, 0, false).status, 0) << read_file(file("err"));
-    const std::string whole = read_file(output(name));
     std::int64_t all = 0;
-    std::memcpy(&all, read_file(file("counted")).data(), sizeof all);
-    ASSERT_GT(all, 1000);
+    ASSERT_NO_FATAL_FAILURE(count_allocations(command, all));
+    const std::string whole = read_file(output(name));
     constexpr std::int64_t kOneByOne = 8;
     const std::int64_t stride = all / strides + 1;
     for (const bool from_there_on : {false, true}) {
@@ -187,20 +192,34 @@ TEST_F(RefusedMemory, IsToldAsJson) {
 }
 
 /// A build's work stays for --resume, so only the output and the status are looked at. The source
-/// has no CRS: PROJ 9.1 ends the process where an allocation of its own fails while it makes one
-/// (proj_create_geographic_crs() of a datum that could not be made).
+/// is text without a CRS: GDAL calls a raster none that it reads where it is refused memory, and
+/// PROJ 9.1 ends the process (proj_create_geographic_crs() of a datum that could not be made).
 TEST_F(RefusedMemory, OfBuildsIsStatus7) {
-  testing::RasterRecipe recipe;
-  recipe.srs.clear();
-  testing::make_raster(file("plain.tif"), recipe);
-  const Arguments command = {"build", file("plain.tif"), "-o", output("b.ptin"),
-                             "-q",    "--threads",       "1"};
+  std::string points;
+  for (int i = 0; i < 400; ++i) {
+    points += std::to_string(i % 20 * 10) + " " + std::to_string(i / 20 * 10) + " " +
+              std::to_string(testing::hills(i % 20, i / 20)) + "\n";
+  }
+  testing::write_file(file("points.xyz"), points);
+  const Arguments command = {"build", file("points.xyz"), "-o", output("b.ptin"),
+                             "-q",    "--threads",        "1"};
+  std::int64_t all = 0;
+  ASSERT_NO_FATAL_FAILURE(count_allocations(command, all));
+  const std::string whole = read_file(output("b.ptin"));
+  std::filesystem::remove(output("b.ptin"));
   for (const bool from_there_on : {false, true}) {
-    for (std::int64_t n = 1; n < 4000 && !HasFailure(); n += n < 20 ? 1 : 199) {
-      SCOPED_TRACE("allocation " + std::to_string(n) + (from_there_on ? " and all behind it" : ""));
+    for (std::int64_t n = 1; n <= all && !HasFailure(); n += n < 20 ? 1 : 149) {
+      SCOPED_TRACE("allocation " + std::to_string(n) + " of " + std::to_string(all) +
+                   (from_there_on ? " and all behind it" : ""));
       const Outcome outcome = ran(command, n, from_there_on);
-      EXPECT_EQ(outcome.status, 7) << outcome.err;
-      EXPECT_FALSE(std::filesystem::exists(output("b.ptin")));
+      // What was refused may be done without, as the buffer of a stable sort; or it came behind the
+      // output, as what the destructors of JSON allocate.
+      if (outcome.status != 0) EXPECT_EQ(outcome.status, 7) << outcome.err;
+      if (std::filesystem::exists(output("b.ptin"))) {
+        EXPECT_TRUE(read_file(output("b.ptin")) == whole);
+      } else {
+        EXPECT_EQ(outcome.status, 7) << outcome.err;
+      }
       const bool says_kept = outcome.err.find("--resume") != std::string::npos;
       EXPECT_TRUE(!says_kept || !names().empty()) << outcome.err;
       std::filesystem::remove_all(file("out"));
