@@ -27,7 +27,8 @@ Fields<IoCounters> io_fields() {
   fields.add("index_nodes", kCount, "", "Nodes of the index whose entries were examined.",
              &IoCounters::index_nodes);
   fields.add("pages", kCount, "", "Record pages read.", &IoCounters::pages);
-  fields.add("bytes_read", kCount, "bytes", "Of these pages and nodes.", &IoCounters::bytes_read);
+  fields.add("bytes_read", kCount, "bytes", "Bytes of these pages and nodes.",
+             &IoCounters::bytes_read);
   fields.add("remote_rounds", kCount, "",
              "How often the question waited for the server of a [file "
              "elsewhere](#files-elsewhere), after its opening; 0 of other files, as the next two.",

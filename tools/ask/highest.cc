@@ -11,11 +11,12 @@ namespace {
 
 Fields<HeightAt> vertex_fields() {
   Fields<HeightAt> fields;
-  fields.add("x", "number", kMapUnit, "Of the vertex, or the point.",
+  fields.add("x", "number", kMapUnit, "Place of the vertex, or the point.",
              [](const HeightAt& v) { return v.position.x; });
-  fields.add("y", "number", kMapUnit, "Of the vertex, or the point.",
+  fields.add("y", "number", kMapUnit, "Place of the vertex, or the point.",
              [](const HeightAt& v) { return v.position.y; });
-  fields.add("height", "number", kHeightUnit, "Of the vertex, or the point.", &HeightAt::height);
+  fields.add("height", "number", kHeightUnit, "Height of the vertex, or the point.",
+             &HeightAt::height);
   return fields;
 }
 
@@ -80,7 +81,7 @@ Fields<HighestPlace> highest_place_fields() {
   fields.add("at_vertex", "boolean", "", "False: on the region's border.",
              &HighestPlace::at_vertex);
   fields.add_parts("", point_fields(), &HighestPlace::result);
-  fields.add("height", "number", kHeightUnit, "Of the place.",
+  fields.add("height", "number", kHeightUnit, "Height of the place.",
              [](const HighestPlace& p) { return p.at.height; });
   return fields;
 }

@@ -30,7 +30,7 @@ Fields<IsolineRow> isoline_row_fields() {
   };
   Fields<IsolineRow> fields;
   fields.add("ID", "integer", "", "From 0.", Told::kProgram, &IsolineRow::id);
-  fields.add("elev", "number", kHeightUnit, "Of the line.", &IsolineRow::elevation);
+  fields.add("elev", "number", kHeightUnit, "Level of the line.", &IsolineRow::elevation);
   fields.add("ring", "boolean", "", "The line is closed.", Told::kService, &IsolineRow::ring);
   fields.next = Told::kProgram;
   fields.add("step", "integer", "", "From 0.", of_step(&IsolineStep::step));
@@ -44,8 +44,8 @@ Fields<IsolineRow> isoline_row_fields() {
 Fields<IsolineRow> band_row_fields() {
   Fields<IsolineRow> fields;
   fields.add("ID", "integer", "", "From 0.", &IsolineRow::id);
-  fields.add("elev_min", "number", kHeightUnit, "Of the band.", &IsolineRow::elevation);
-  fields.add("elev_max", "number", kHeightUnit, "Of the band.", &IsolineRow::upper);
+  fields.add("elev_min", "number", kHeightUnit, "Lower level of the band.", &IsolineRow::elevation);
+  fields.add("elev_max", "number", kHeightUnit, "Upper level of the band.", &IsolineRow::upper);
   return fields;
 }
 
@@ -53,14 +53,14 @@ Fields<IsolineAnswer> isoline_fields() {
   Fields<TraceCounts> crossed;
   crossed.add("triangles", "integer", "", "Crossed by one level at least.",
               &TraceCounts::triangles);
-  crossed.add("vertices", "integer", "", "Of those triangles.", &TraceCounts::vertices);
+  crossed.add("vertices", "integer", "", "Corners of those triangles.", &TraceCounts::vertices);
   crossed.add("segments", "integer", "", "One a triangle and level.", &TraceCounts::segments);
   Fields<IsolineAnswer> fields;
   fields.add("levels", "array of numbers", kHeightUnit, kOfLevels,
              [](const IsolineAnswer& a) { return a.isolines->levels(); });
   fields.add("lines", "integer", "", "Written.", &IsolineAnswer::lines);
-  fields.add("rings", "integer", "", "Of these, closed ones.", &IsolineAnswer::rings);
-  fields.add("points", "integer", "", "Of all lines.", &IsolineAnswer::points);
+  fields.add("rings", "integer", "", "Closed ones among these.", &IsolineAnswer::rings);
+  fields.add("points", "integer", "", "Points of all lines.", &IsolineAnswer::points);
   fields.add_object("crossed", "object", "What the levels cross.", crossed,
                     [](const IsolineAnswer& a) { return &a.isolines->crossed; });
   fields.add("tiles", "integer", "", "In which the terrain was processed.",
@@ -73,7 +73,7 @@ Fields<BandAnswer> band_fields() {
   fields.add("levels", "array of numbers", kHeightUnit, kOfLevels, &BandAnswer::levels);
   fields.add("features", "integer", "", "Bands that have an area, one feature each.",
              &BandAnswer::features);
-  fields.add("polygons", "integer", "", "Of all bands.", &BandAnswer::polygons);
+  fields.add("polygons", "integer", "", "Polygons of all bands.", &BandAnswer::polygons);
   return fields;
 }
 

@@ -43,7 +43,7 @@ Fields<LocatedRow> located_fields() {
   fields.add("state", "string", "", "What is there.",
              [](const Row& r) { return tools::name_of(r.point.state); });
   fields.add("height", "number or null", kHeightUnit,
-             "Of the TIN that was asked; null where it has no surface.",
+             "Height of the TIN that was asked; null where it has no surface.",
              [](const Row& r) { return r.point.height; });
   fields.add("height_min", "number or null", kHeightUnit,
              "The exact height is no lower, if the exact TIN is surface there.",

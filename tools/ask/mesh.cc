@@ -22,18 +22,18 @@ Fields<MeshAnswer> mesh_fields() {
   written.add("triangles", "integer", "", "In the output: no void ones.", &Row::triangles);
   Fields<Row> fields;
   fields.add("vertices", "integer", "",
-             "Of the mesh, T0 and void ones included; of `refine --clip` the part of it that meets "
-             "the region.",
+             "All of the mesh, T0 and void ones included; with `refine --clip` the part of it that "
+             "meets the region.",
              of_tin(&RefinedTin::vertices));
-  fields.add("void_vertices", "integer", "", "Of these, without a height.",
+  fields.add("void_vertices", "integer", "", "Those without a height.",
              of_tin(&RefinedTin::void_vertices));
-  fields.add("triangles", "integer", "", "Of the same mesh, void ones included.",
+  fields.add("triangles", "integer", "", "All of the same mesh, void ones included.",
              of_tin(&RefinedTin::triangles));
-  fields.add("t0_vertices", "integer", "", "Of T0.", of_tin(&RefinedTin::t0_vertices));
+  fields.add("t0_vertices", "integer", "", "Vertices of T0.", of_tin(&RefinedTin::t0_vertices));
   fields.add_object("written", "object", "What is in the output, or would be.", written,
                     [](const Row& a) { return &a; });
   fields.add_object("local_frame", "object",
-                    "Of STL: where its coordinates stand, local = (map - origin) * scale.",
+                    "Where coordinates of STL stand: local = (map - origin) * scale.",
                     frame_fields(), &Row::frame);
   return fields;
 }
@@ -41,13 +41,12 @@ Fields<MeshAnswer> mesh_fields() {
 Fields<StreamSummary> stream_fields() {
   using Row = StreamSummary;
   Fields<Row> fields;
-  fields.add("base_vertices", "integer", "", "Of T0, or of the mesh that the receiver has.",
-             &Row::base_vertices);
+  fields.add("base_vertices", "integer", "",
+             "Vertices of T0, or of the mesh that the receiver has.", &Row::base_vertices);
   fields.add("splits", "integer", "", "Sent.", &Row::splits);
   fields.add("frames", "integer", "", "Sent.", &Row::frames);
   fields.add("bytes", "integer", "bytes", "Sent.", &Row::bytes);
-  fields.add("split_bytes", "integer", "bytes", "Of these, the frames of splits.",
-             &Row::split_bytes);
+  fields.add("split_bytes", "integer", "bytes", "Bytes of frames of splits.", &Row::split_bytes);
   return fields;
 }
 

@@ -57,9 +57,9 @@ Fields<ProfileRow> profile_fields() {
   fields.add("line", "integer", "", kWhichLine, Told::kService | Told::kNoTableRow, line);
   fields.add("distance", "number", kLengthUnit, "Along the line, from its beginning.",
              [](const Row& r) { return r.point.distance; });
-  fields.add("x", "number", kMapUnit, "Of the point.", Told::kNoFeature,
+  fields.add("x", "number", kMapUnit, "Place of the point.", Told::kNoFeature,
              [](const Row& r) { return r.at.x; });
-  fields.add("y", "number", kMapUnit, "Of the point.", Told::kNoFeature,
+  fields.add("y", "number", kMapUnit, "Place of the point.", Told::kNoFeature,
              [](const Row& r) { return r.at.y; });
   fields.add("height", "number or null", kHeightUnit, "Null where no surface touches the line.",
              [](const Row& r) { return r.point.height; });
@@ -88,7 +88,7 @@ Fields<ProfileLineRow> profile_line_fields() {
   Fields<Row> fields;
   fields.add("line", "integer", "", "Which line of the input, from 0.",
              [](const Row& r) { return r.points.front().line; });
-  fields.add("length", "number", kLengthUnit, "Of the line.",
+  fields.add("length", "number", kLengthUnit, "Length of the line.",
              [](const Row& r) { return r.points.back().distance; });
   fields.next = Told::kProgram;
   fields.add("certified_error", "number", kHeightUnit, "At samples.",
@@ -104,7 +104,7 @@ Fields<ProfileLineRow> profile_line_fields() {
 Fields<ProfileAnswer> profile_answer_fields() {
   using Answer = ProfileAnswer;
   constexpr std::string_view kOfLengths =
-      "Of distances along lines: the map unit, in a geographic CRS metres.";
+      "Unit of distances along lines: the map unit, in a geographic CRS metres.";
   const auto length_unit = [](const Answer& a) { return length_unit_of(a.crs); };
   Fields<Answer> fields;
   fields.add("bent_at_most", "number", kMapUnit,
@@ -116,7 +116,7 @@ Fields<ProfileAnswer> profile_answer_fields() {
   fields.add("skipped_lines", "integer", "", "Lines without length.",
              [](const Answer& a) { return a.profile.skipped_lines; });
   fields.next = Told::kProgram;
-  fields.add("length", "number", kLengthUnit, "Of all lines together.", [](const Answer& a) {
+  fields.add("length", "number", kLengthUnit, "Length of all lines together.", [](const Answer& a) {
     double length = 0.0;
     for (const auto& line : tools::lines_of(a.profile)) length += line.back().distance;
     return length;

@@ -55,13 +55,14 @@ void add_place(Fields<SightRow>& fields, const std::string& name, std::string_vi
   const auto told = [&](std::string_view part) {
     return std::count(tables.begin(), tables.end(), part) > 0 ? Told::kAll : Told::kObject;
   };
-  parts.add("x", "number", kMapUnit, "Of the place.", told("x"),
+  parts.add("x", "number", kMapUnit, "Where it is.", told("x"),
             [](const Point& p) { return p.position.x; });
-  parts.add("y", "number", kMapUnit, "Of the place.", told("y"),
+  parts.add("y", "number", kMapUnit, "Where it is.", told("y"),
             [](const Point& p) { return p.position.y; });
   parts.add("distance", "number", kHeightUnit, "Over ground, from the first end.", told("distance"),
             &Point::distance);
-  parts.add("height", "number", kHeightUnit, "Of the line there.", told("height"), &Point::height);
+  parts.add("height", "number", kHeightUnit, "Height of the line there.", told("height"),
+            &Point::height);
   fields.add_object(name, type, meaning, parts, place);
 }
 
@@ -152,7 +153,7 @@ Fields<SightRow> sight_fields() {
              Told::kObject, [](const Row& r) {
                return Json{tools::name_of(r.result.state_a), tools::name_of(r.result.state_b)};
              });
-  fields.add("length", "number", kHeightUnit, "Of the line over ground.",
+  fields.add("length", "number", kHeightUnit, "Length of the line over ground.",
              [](const Row& r) { return r.result.length; });
   add_place(fields, "obstruction", "object or null",
             "Where the line first goes below ground; null unless hidden.", &Row::obstruction,
@@ -165,7 +166,7 @@ Fields<SightRow> sight_fields() {
             "The least height of the line above ground, ends included; null where none is known.",
             &Row::clearance, {"distance"});
   fields.add("void_length", "number or null", kHeightUnit,
-             "Of the line over voids; null where it is not known.",
+             "Length of the line over voids; null where it is not known.",
              [](const Row& r) { return r.result.void_length; });
   fields.add("fresnel.ratio", "number or null", "", "That clearance over that radius.",
              [](const Row& r) { return r.result.fresnel_ratio; });
@@ -180,10 +181,9 @@ Fields<SightRow> sight_fields() {
              [](const Row& r) { return r.result.exact; });
   fields.add("cost", "object", "", "What the pair took.", Told::kProgram & Told::kObject,
              [](const Row& r) { return cost_json(r.result.cost); });
-  fields.add(
-      "id", "string", "",
-      "Of each of `pairs`: its column or attribute (`--id`); left out where the input has none.",
-      Told::kProgram, &Row::id);
+  fields.add("id", "string", "",
+             "Column or attribute of each of `pairs` (`--id`); left out where the input has none.",
+             Told::kProgram, &Row::id);
   return fields;
 }
 

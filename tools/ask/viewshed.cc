@@ -74,9 +74,10 @@ Fields<Viewshed> viewshed_fields() {
   fields.next = Told::kService;
   fields.add_parts("", vertices, [](const Row& r) { return &r; });
   fields.next = Told::kAll;
-  fields.add("eye_height", "number", kHeightUnit, "Of the observer, absolute.", &Row::eye_height);
+  fields.add("eye_height", "number", kHeightUnit, "Height of the observer's eye, absolute.",
+             &Row::eye_height);
   fields.next = Told::kProgram;
-  constexpr std::string_view kOfRaster = "Of the raster; 0 where the output is a layer.";
+  constexpr std::string_view kOfRaster = "Size of the raster; 0 where the output is a layer.";
   fields.add("width", "integer", "pixels", kOfRaster, &Row::width);
   fields.add("height", "integer", "pixels", kOfRaster, &Row::height);
   fields.add_object("pixels", "object or null",
@@ -92,7 +93,7 @@ Fields<Viewshed::Target> target_fields() {
   using Row = Viewshed::Target;
   constexpr std::string_view kCertain = "The full TIN of the source says the same.";
   Fields<Row> fields;
-  fields.add("height", "number", kHeightUnit, "Of the vertex.", &Row::height);
+  fields.add("height", "number", kHeightUnit, "Height of the vertex.", &Row::height);
   fields.add("visible", "flag", "", "1: it is.", Told::kProgram, &Row::visible);
   fields.add("certain", "flag", "", kCertain, Told::kProgram, &Row::certain);
   fields.add("visible", "boolean", "", "It is.", Told::kService, &Row::visible);

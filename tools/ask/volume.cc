@@ -8,7 +8,7 @@ namespace {
 void add_volume_of(Fields<VolumeResult>& fields, const std::string& name, std::string_view meaning,
                    CertifiedVolume VolumeResult::*volume) {
   Fields<CertifiedVolume> parts;
-  parts.add("volume", "number", "", "Of the TIN that was asked.", Told::kObject,
+  parts.add("volume", "number", "", "Volume of the TIN that was asked.", Told::kObject,
             &CertifiedVolume::value);
   parts.add("low", "number", "", "The source's is no less.", &CertifiedVolume::low);
   parts.add("high", "number", "", "The source's is no more.", &CertifiedVolume::high);
@@ -67,10 +67,11 @@ void add_question(Parameters& rows, VolumeQuestion& question) {
 
 Fields<VolumeRow> volume_row_fields() {
   Fields<VolumeRow> fields;
-  fields.add("level", "number or null", kHeightUnit,
-             "As asked; null against another terrain. Of several levels this and the next ones, "
-             "down to `area`, stand in `levels`.",
-             [](const VolumeRow& r) { return r.level ? Json(*r.level) : Json(); });
+  fields.add(
+      "level", "number or null", kHeightUnit,
+      "As asked; null against another terrain. Where there are several, this and the next ones, "
+      "down to `area`, stand in `levels`.",
+      [](const VolumeRow& r) { return r.level ? Json(*r.level) : Json(); });
   fields.add_parts("", result_fields(), &VolumeRow::result);
   return fields;
 }
@@ -80,7 +81,7 @@ Fields<VolumeAnswer> volume_fields() {
   Fields<Row> fields;
   fields.add_parts("", volume_row_fields().told(Told::kDocument),
                    [](const Row& a) { return a.rows.size() == 1 ? &a.rows[0] : nullptr; });
-  fields.add_array("levels", "Of several levels: one each, in the order of the question.",
+  fields.add_array("levels", "One for each of several levels, in the order of the question.",
                    volume_row_fields().told(Told::kDocument),
                    [](const Row& a) { return a.rows.size() == 1 ? nullptr : &a.rows; });
   fields.add_object("against", "object or null", "The other terrain, in its units.",

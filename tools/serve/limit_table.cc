@@ -19,7 +19,6 @@ std::uint64_t in_ms(milliseconds time) { return static_cast<std::uint64_t>(time.
 milliseconds of_ms(std::uint64_t ms) { return milliseconds(static_cast<std::int64_t>(ms)); }
 
 constexpr std::uint64_t kAny = std::uint64_t{1} << 40;
-/// Of what a request may make a connection hold.
 
 #define PTIN_LIMIT(member)                                       \
   [](const ServeOptions& o) { return std::uint64_t{o.member}; }, \

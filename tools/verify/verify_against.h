@@ -2,9 +2,9 @@
 //
 // `verify --against`: the promises of a file, checked at every sample of its source.
 //
-// Independent of the builder: samples are read here, triangles are scanned over them in integers
-// here, distances to borders are measured here. The library's refine() alone is used,
-// since it is what is being verified.
+// Independent of the builder where certainty is measured: triangles are scanned over samples in
+// integers, and distances to borders are measured, by code of this room. Samples are read as a build
+// reads them, and the library's refine() is what is being verified.
 #pragma once
 
 #include <functional>
