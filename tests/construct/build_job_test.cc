@@ -25,16 +25,9 @@ class NotesThreads final : public TaskDriver {
   int threads = 0;
 };
 
-/// What the tasks of a list get.
-struct Shares {
-  int threads = 0;
-  std::vector<std::string> memory;  ///< Bytes that each may sort in.
-  friend bool operator==(const Shares&, const Shares&) = default;
-};
-
-/// Shares of so many tasks, each of which takes so many bytes at least, where 1000 bytes are there for
-/// sorting and 2^40 for all, and a job may take two threads.
-Shares shares_of(std::size_t tasks, std::uint64_t bytes) {
+/// The threads that so many tasks run on, and the bytes that each may sort in. They take so many bytes
+/// each at least; 1000 bytes are there for sorting and 2^40 for all, and a job may take two threads.
+std::string shares_of(std::size_t tasks, std::uint64_t bytes) {
   const std::vector<std::string> inputs;
   const std::string output;
   const BuildOptions options;
@@ -49,20 +42,19 @@ Shares shares_of(std::size_t tasks, std::uint64_t bytes) {
   test::ToldWorker worker([](const Task& task) { return std::to_string(task.bytes); });
   TaskList list(TaskKind::kRead, std::vector<std::uint64_t>(tasks, 1), bytes);
   job.run_tasks()(list, worker);
-  Shares shares{driver.threads, {}};
+  std::string shares = std::to_string(driver.threads) + ":";
   for (const auto& [name, result] : list.results()) {
-    shares.memory.push_back(result.told);
+    shares += " " + result.told;
   }
   return shares;
 }
 
 TEST(Job, SharesMemoryForSortingAmongTheTasksThatRunAtOnce) {
-  EXPECT_EQ(shares_of(4, 0), (Shares{2, {"500", "500", "500", "500"}}));
-  EXPECT_EQ(shares_of(1, 0), (Shares{1, {"1000"}})) << "nothing runs beside it";
+  EXPECT_EQ(shares_of(4, 0), "2: 500 500 500 500");
+  EXPECT_EQ(shares_of(1, 0), "1: 1000") << "nothing runs beside it";
   constexpr std::uint64_t kMoreThanHalf = std::uint64_t{3} << 38;
-  EXPECT_EQ(shares_of(3, kMoreThanHalf), (Shares{1, {"1000", "1000", "1000"}}))
-      << "the memory holds one at a time";
-  EXPECT_EQ(shares_of(2, std::uint64_t{1} << 41), (Shares{1, {"1000", "1000"}}))
+  EXPECT_EQ(shares_of(3, kMoreThanHalf), "1: 1000 1000 1000") << "the memory holds one at a time";
+  EXPECT_EQ(shares_of(2, std::uint64_t{1} << 41), "1: 1000 1000")
       << "it holds none, and one is tried";
 }
 
