@@ -22,12 +22,19 @@ namespace ptin::tools {
           ""};
 }
 
+/// The number that an option has where it is given this text; none where CLI11 refuses the text. One
+/// that is not finite is one, for its range to refuse. Blanks may stand before it.
+[[nodiscard]] inline std::optional<double> given_number(const std::string& text) {
+  double number = 0.0;
+  return CLI::detail::lexical_cast(text, number) ? std::optional(number) : std::nullopt;
+}
+
 /// Refuses a number beyond the range: "--level: must be a finite number, in the height's unit; nan is
 /// none". What is no number CLI11 refuses.
 /// @param unit  "in map units"; may be empty.
 [[nodiscard]] inline CLI::Validator numbers(NumberRange range, const std::string& unit) {
   return {[range, unit](const std::string& text) {
-            const std::optional<double> number = parse_number<double>(text);
+            const std::optional<double> number = given_number(text);
             if (!number || is_in(range, *number)) return std::string();
             return std::string("must be ") + words_of(range) + (unit.empty() ? "" : ", " + unit) +
                    "; " + text + " is none";

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "engine/error.h"
-#include "engine/number.h"
+#include "tools/facts/numbers.h"
 #include "tools/output/file_name.h"
 
 namespace ptin::tools {
@@ -32,7 +32,7 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
   return FileIdentity{status.st_dev, status.st_ino};
 }
 
-bool is_number(const std::string& text) { return parse_number<double>(text).has_value(); }
+bool is_number(const std::string& text) { return given_number(text).has_value(); }
 
 /// The files that a VRT is made of. Other formats are not opened, since their drivers may read a
 /// whole file to open it.

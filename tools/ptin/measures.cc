@@ -11,10 +11,9 @@ namespace ptin::tools {
 
 namespace {
 
-/// The number in a text that may have a unit behind it; none: it is neither. One that is not finite is
-/// one, for its range to refuse.
+/// The number in a text that may have a unit behind it; none: it is neither.
 std::optional<double> number_in(const std::string& text) {
-  if (const std::optional<double> number = parse_number<double>(text)) return number;
+  if (const std::optional<double> number = given_number(text)) return number;
   const std::optional<Length> length = length_of(text);
   return length ? std::optional(length->number) : std::nullopt;
 }

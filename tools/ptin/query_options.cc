@@ -185,8 +185,8 @@ double coefficient_of_factor(const std::string& text) {
 
 void add_curvature_option(CLI::App& app, double& coefficient) {
   const auto is_at_most_one = [](const std::string& text) {
-    double number = 0.0;
-    if (!CLI::detail::lexical_cast(text, number) || !(number > 1)) return std::string();
+    const std::optional<double> number = given_number(text);
+    if (!number || !(*number > 1)) return std::string();
     return "must be from 0 (a flat Earth) to 1 (no refraction); " + text +
            " is none. An Earth of so many times its radius is --refraction " + text;
   };

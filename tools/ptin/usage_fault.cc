@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/number.h"
+#include "tools/facts/numbers.h"
 #include "tools/ptin/nearest_name.h"
 
 namespace ptin::tools {
@@ -134,7 +134,7 @@ std::string no_number(const std::string& rest) {
   const std::size_t sign = rest.find(" = ");
   const std::string name = rest.substr(0, sign), value = rest.substr(sign + 3);
   return name + ": " + value +
-         (parse_number<double>(value) ? " is no whole number that it can take" : " is no number");
+         (given_number(value) ? " is no whole number that it can take" : " is no number");
 }
 
 /// "--by: x not in {stars,splits}".
