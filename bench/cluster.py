@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Predicts how long a build takes on a number of workers: a discrete-event simulation of the schedule
-(engine/construct/tile_tasks/task_schedule), fed with the times of tasks that bench/cluster_times measured.
+(engine/construct/tile_tasks/tile_schedule), fed with the times of tasks that bench/cluster_times measured.
 
 usage: bench/cluster.py TIMES.jsonl [--workers N]... [--shared TIMES.jsonl]    the terrain that was measured
        bench/cluster.py TIMES.jsonl --scale [--disk MB/S]                      10^10 to 10^12 samples, as Markdown

@@ -358,6 +358,7 @@ TEST(CliBadInput, NumbersThatAreNone) {
       {unstream, "--interval"},
       {{"volume", store}, "--level"},
       {{"bench", store}, "--seconds"},
+      {{"refine", store, "-o", folder.file("a.stl")}, "--exaggeration"},
       {{"verify", store, "--against", raster}, "--tolerance"},
       {{"export", store, "-o", tif, "--what", "hillshade"}, "--azimuth"},
       {{"export", store, "-o", tif, "--what", "hillshade"}, "--altitude"},
@@ -368,7 +369,7 @@ TEST(CliBadInput, NumbersThatAreNone) {
     words.insert(words.end(), {option, number});
     expect_refusal(run_ptin(words), 2, option + ": ");
   };
-  for (const char* number : {"nan", "inf", "1e999"}) {
+  for (const char* number : {"nan", "inf", "1e999", " nan"}) {
     for (const auto& [words, option] : finite) refuse(words, option, number);
     expect_refusal(run_ptin({"locate", store, number, "3"}), 2,
                    std::string("X_Y: must be a finite number, in map units; ") + number);

@@ -15,6 +15,7 @@
 #include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tests/tools/raster_reader.h"
+#include "tests/tools/refusal.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/export/raster_export.h"
 
@@ -23,6 +24,7 @@ namespace {
 
 using testing::built;
 using testing::expect_done;
+using testing::expect_refusal;
 using testing::Outcome;
 using testing::read_file;
 using testing::read_raster;
@@ -97,6 +99,19 @@ TEST(ExportRaster, TakesSeveralCreationOptions) {
   const std::size_t deflated = size({"--co", "COMPRESS=DEFLATE"});
   EXPECT_LT(deflated, size({"--co", "COMPRESS=NONE"}));
   EXPECT_NE(size({"--co", "COMPRESS=DEFLATE", "--co", "ZLEVEL=1"}), deflated);
+}
+
+TEST(ExportRaster, RefusesBlocksThatTheMemoryDoesNotHold) {
+  const TestFolder folder;
+  const std::string file = built(folder, "mountains_257.tif");
+  const auto before = folder.names();
+  for (const char* what : {"height", "slope"}) {
+    expect_refusal(
+        run_ptin({"export", file, "-q", "-o", folder.file("a.tif"), "--what", what, "--pixel-size",
+                  "4", "--memory", "32M", "--co", "BLOCKXSIZE=4096", "--co", "BLOCKYSIZE=4096"}),
+        7, "are there for it; give smaller blocks (--co BLOCKXSIZE=");
+  }
+  EXPECT_EQ(folder.names(), before);
 }
 
 TEST(ExportRaster, RasterDoesNotDependOnMemory) {

@@ -181,6 +181,13 @@ TEST_F(Measured, AllLengthsAndHeightsTakeUnits) {
   }
 }
 
+TEST_F(Measured, MayHaveBlanksBeforeThem) {
+  const std::string feet = built("feet", 2913, "foot");
+  EXPECT_EQ(answer_and_file({"volume", feet}, "--level", " 5"),
+            answer_and_file({"volume", feet}, "--level", "5"));
+  EXPECT_EQ(parse_bytes(" 5M", "--memory"), std::uint64_t{5} << 20);
+}
+
 TEST_F(Measured, AreRefusedInUnitsThatNobodyKnows) {
   const std::string feet = built("feet", 2913, "foot");
   expect_done({"stream", feet, "-o", file("sent.pts"), "-q"});

@@ -18,6 +18,7 @@
 #include "engine/construct/memory_plan.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "engine/memory_units.h"
 #include "engine/stop.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/formats/geotiff_crs.h"
@@ -96,10 +97,27 @@ void check_table(const PixelRect& raster, const RasterTarget& target) {
               target.path);
 }
 
+/// Checks that a block fits the memory of the question, which samples whole blocks.
+void check_block(const RasterRequest& request, const RasterTarget& target) {
+  const std::int64_t width = std::min(request.block_width, request.pixels.width);
+  const std::int64_t height = std::min(request.block_height, request.pixels.height);
+  const std::uint64_t bytes = static_cast<std::uint64_t>(width * height) *
+                              (request.heights ? sizeof(double) : sizeof(GridNormal));
+  if (bytes <= request.limits.memory_bytes) return;
+  throw Error(ErrorCode::resource_exhausted,
+              "a block of " + std::to_string(width) + " x " + std::to_string(height) +
+                  " pixels takes " + std::to_string((bytes - 1) / kMiB + 1) +
+                  " MiB of memory, and " + std::to_string(request.limits.memory_bytes / kMiB) +
+                  " MiB are there for it; give smaller blocks (--co BLOCKXSIZE=" + kBlockSide +
+                  " --co BLOCKYSIZE=" + kBlockSide + ") or more --memory",
+              target.path);
+}
+
 /// Fills a dataset block by block.
 class RasterWriter {
  public:
   /// @param request  What is not asked for yet is set.
+  /// @throws Error resource_exhausted  a block does not fit the memory
   RasterWriter(const Terrain& terrain, RasterRequest request, const RasterTarget& target,
                GDALDataset& dataset)
       : terrain_(terrain),
@@ -114,6 +132,7 @@ class RasterWriter {
     request_.block_height = height;
     request_.heights = of_heights();
     request_.normals = !of_heights();
+    check_block(request_, target);
   }
 
   WrittenRaster run() {

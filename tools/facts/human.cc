@@ -150,6 +150,7 @@ std::string exact_number(double value) {
 
 std::uint64_t parse_bytes(const std::string& text, const std::string& option) {
   std::string_view rest = text;
+  rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   const double value = take_number<double>(rest).value_or(-1.0);
   double factor = 1.0;
   if (!rest.empty()) {
