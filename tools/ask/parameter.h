@@ -69,7 +69,7 @@ struct Parameter {
   Door required = Door::kNone;    ///< Where it must be given.
   bool shows_default = false;
   Door doors = Door::kBoth;
-  bool is_json = false;        ///< Over HTTP: text of JSON, or a value of it in a body.
+  bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
   std::string help{};          ///< Of people, without the unit.
   std::string_view hint{};     ///< Behind a refusal: what may have been meant.
