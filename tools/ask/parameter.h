@@ -116,11 +116,8 @@ class Parameters : public std::vector<Parameter> {
 [[nodiscard]] std::string name_at(const Parameter& parameter, Door door);
 /// The parameter's help with its unit, as the door has it.
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
-/// The numbers that a door takes.
-[[nodiscard]] inline const NumberRange& range_at(const Parameter& parameter, Door door) noexcept {
-  const bool is_other = door == Door::kService && parameter.range_over_http;
-  return is_other ? *parameter.range_over_http : parameter.range;
-}
+/// The numbers that a door takes: over HTTP finite ones, since JSON has no others.
+[[nodiscard]] NumberRange range_at(const Parameter& parameter, Door door) noexcept;
 /// The value that a parameter has before it is given; empty where it has none.
 [[nodiscard]] std::string default_of(const Parameter& parameter);
 /// True for a flag, which has no value on the command line.

@@ -42,6 +42,7 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, WordOption>) {
       row.into = word_of(field, options);
+      if (row.metavar.empty()) row.metavar = "TEXT";
       row.choices.assign(field.words.begin(), field.words.end());
     } else if constexpr (std::is_same_v<Field, std::optional<std::int64_t> BuildOptions::*>) {
       row.into = [&value = options.*field](const std::string& text) {
