@@ -2,7 +2,6 @@
 #include "tools/ask/parameter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 
 #include "engine/crs/ground.h"
@@ -136,6 +135,15 @@ std::string help_at(const Parameter& p, Door door) {
   return p.help + " (" + unit + own + ")";
 }
 
+NumberRange range_at(const Parameter& p, Door door) noexcept {
+  if (door == Door::kProgram) return p.range;
+  NumberRange range = p.range_over_http.value_or(p.range);
+  range.least = std::max(range.least, NumberRange::kFinite.least);
+  range.most = std::min(range.most, NumberRange::kFinite.most);
+  range.has_nan = false;
+  return range;
+}
+
 std::string default_of(const Parameter& p) {
   return std::visit(
       [](const auto& into) -> std::string {
@@ -170,9 +178,7 @@ double Reading::number_of(const Parameter& p, const std::string& text) const {
   if (!number && has_own_unit(p, door_)) {
     if (const auto length = tools::length_of(text)) number = length->number;
   }
-  // Over HTTP no number is infinite: JSON has none.
-  const bool is_too_far = door_ == Door::kService && number && !std::isfinite(*number);
-  if (number && range_at(p, door_).holds(*number) && !is_too_far) return *number;
+  if (number && range_at(p, door_).holds(*number)) return *number;
   const std::string unit = words_of(p.unit, door_);
   if (!number && !p.source_unit.empty() && tools::length_of(text)) {
     refuse("must be a plain number, " + std::string(p.source_unit) +

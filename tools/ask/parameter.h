@@ -69,7 +69,7 @@ struct Parameter {
   Door required = Door::kNone;    ///< Where it must be given.
   bool shows_default = false;
   Door doors = Door::kBoth;
-  bool is_json = false;        ///< Over HTTP: text of JSON, or a value of it in a body.
+  bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
   std::string help{};          ///< Of people, without the unit.
   std::string_view hint{};     ///< Behind a refusal: what may have been meant.
@@ -116,11 +116,8 @@ class Parameters : public std::vector<Parameter> {
 [[nodiscard]] std::string name_at(const Parameter& parameter, Door door);
 /// The parameter's help with its unit, as the door has it.
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
-/// The numbers that a door takes.
-[[nodiscard]] inline const NumberRange& range_at(const Parameter& parameter, Door door) noexcept {
-  const bool is_other = door == Door::kService && parameter.range_over_http;
-  return is_other ? *parameter.range_over_http : parameter.range;
-}
+/// The numbers that a door takes: over HTTP finite ones, since JSON has no others.
+[[nodiscard]] NumberRange range_at(const Parameter& parameter, Door door) noexcept;
 /// The value that a parameter has before it is given; empty where it has none.
 [[nodiscard]] std::string default_of(const Parameter& parameter);
 /// True for a flag, which has no value on the command line.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/command_line.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <span>
@@ -124,7 +125,8 @@ void declare(CLI::App& app, const ask::Parameter& row, const ask::Parameters& ro
                             }),
                             help);
     const bool has_any_number = row.repeats || row.most_values == ask::kAnyNumberOfValues;
-    option->expected(static_cast<int>(row.least_values),
+    // An option has a value behind it, even where a list of JSON may be empty.
+    option->expected(static_cast<int>(std::max(row.least_values, 1U)),
                      has_any_number ? -1 : static_cast<int>(row.most_values));
     option->allow_extra_args(!row.repeats && row.most_values > 1);
     option->type_name(values_of(row));

@@ -20,7 +20,7 @@ Json schema_of(const ask::Parameter& row) {
     for (const std::string_view choice : row.choices) schema["enum"].push_back(choice);
     return schema;
   }
-  const NumberRange& range = ask::range_at(row, ask::Door::kService);
+  const NumberRange range = ask::range_at(row, ask::Door::kService);
   const bool is_whole = ask::is_whole(row);
   const double least = is_whole ? std::max(0.0, range.least) : range.least;
   Json number = {{"type", is_whole ? "integer" : "number"}};
