@@ -144,8 +144,8 @@ NumberRange range_at(const Parameter& p, Door door) noexcept {
   return range;
 }
 
-std::string default_of(const Parameter& p) {
-  return std::visit(
+Parameter& Parameter::with_default() {
+  default_value = std::visit(
       [](const auto& into) -> std::string {
         using Type = std::decay_t<decltype(into)>;
         if constexpr (std::is_same_v<Type, std::string*>) return *into;
@@ -156,7 +156,8 @@ std::string default_of(const Parameter& p) {
         }
         return {};
       },
-      p.into);
+      into);
+  return *this;
 }
 
 bool is_whole(const Parameter& p) noexcept {

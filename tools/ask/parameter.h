@@ -67,7 +67,7 @@ struct Parameter {
   bool repeats = false;           ///< It may be given several times, a value each time.
   bool splits_at_commas = false;  ///< On the command line several values may be one word.
   Door required = Door::kNone;    ///< Where it must be given.
-  bool shows_default = false;
+  std::string default_value{};    ///< What it is where it is not given, to be told; empty: nothing.
   Door doors = Door::kBoth;
   bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
@@ -89,7 +89,8 @@ struct Parameter {
   Parameter& needing(std::string_view names) { return needs = names, *this; }
   Parameter& bound(Door where) { return bound_at = where, *this; }
   Parameter& required_at(Door where) { return required = where, *this; }
-  Parameter& with_default() { return shows_default = true, *this; }
+  /// Has the value told that it has now.
+  Parameter& with_default();
   Parameter& at(Door where) { return doors = where, *this; }
   Parameter& as_json() { return is_json = true, *this; }
   Parameter& repeated() { return repeats = true, *this; }
@@ -118,8 +119,6 @@ class Parameters : public std::vector<Parameter> {
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
 /// The numbers that a door takes: over HTTP finite ones, since JSON has no others.
 [[nodiscard]] NumberRange range_at(const Parameter& parameter, Door door) noexcept;
-/// The value that a parameter has before it is given; empty where it has none.
-[[nodiscard]] std::string default_of(const Parameter& parameter);
 /// True for a flag, which has no value on the command line.
 [[nodiscard]] inline bool is_flag(const Parameter& p) noexcept {
   return std::holds_alternative<bool*>(p.into);

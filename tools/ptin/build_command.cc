@@ -35,7 +35,6 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
                      .range = option.unit == nullptr ? NumberRange::kAny : option.range,
                      .source_unit = option.unit == nullptr ? "" : option.unit,
                      .splits_at_commas = option.has_many && !option.is_file,
-                     .shows_default = option.shows_default,
                      .help = option.help};
   if (option.has_many) row.values(1, ask::kAnyNumberOfValues);
   const auto place = [&](const auto& field) {
@@ -60,7 +59,7 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
   if (std::holds_alternative<std::optional<std::array<double, 4>> BuildOptions::*>(option.field)) {
     row.values(4, 4);
   }
-  return row;
+  return option.shows_default ? row.with_default() : row;
 }
 
 /// The work: its memory, threads and temporary files, and whether it goes on.

@@ -92,8 +92,7 @@ bool has_name(std::string_view list, std::string_view name) {
 /// What help says of a parameter behind its name: "E Excludes: --vertices".
 std::string help_of_value(const ask::Parameter& row, const ask::Parameters& rows) {
   std::string text = values_of(row);
-  const std::string by_default = row.shows_default ? ask::default_of(row) : std::string();
-  if (!by_default.empty()) text += "=" + by_default;
+  if (!row.default_value.empty()) text += "=" + row.default_value;
   if (row.most_values == ask::kAnyNumberOfValues && !row.metavar.ends_with("...")) text += " ...";
   if (is_at(row.required, ask::Door::kProgram)) text += " REQUIRED";
   std::string needed, excluded;
