@@ -34,7 +34,7 @@ enum class Door : std::uint8_t { kNone = 0, kProgram = 1, kService = 2, kBoth = 
 /// behind them, as 10ft.
 enum class Unit : std::uint8_t {
   kNone,
-  kMap,     ///< Of positions.
+  kMap,     ///< The unit of positions.
   kHeight,  ///< The height's unit; where nobody knows it, what is taken for it (unit_of_ground()).
   kGround,  ///< A distance: map units; in a geographic CRS metres.
 };
@@ -71,7 +71,7 @@ struct Parameter {
   Door doors = Door::kBoth;
   bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
-  std::string help{};          ///< Of people, without the unit.
+  std::string help{};          ///< For people, without the unit.
   std::string_view hint{};     ///< Behind a refusal: what may have been meant.
 
   // Each sets what its name says, so that a row is one statement.

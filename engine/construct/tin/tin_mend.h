@@ -17,7 +17,7 @@ class PointOrder;
 /// A mesh on disk. Its triangles are counter-clockwise but for slivers and faults.
 struct MeshOnDisk {
   RecordFile<GridTriangle> triangles;  ///< Ascending.
-  RecordFile<std::uint64_t> places;    ///< Of their vertices along the curve, ascending.
+  RecordFile<std::uint64_t> places;    ///< Places of their vertices along the curve, ascending.
 };
 
 /// Flips slivers away (tin/sliver_flips.h). The triangles around them are taken into memory as a

@@ -18,7 +18,7 @@ template <class Height>
 struct PixelBuffers {
   std::span<Height> heights;          ///< Height's unit; NaN without surface.
   std::span<PointState> states{};     ///< What the centre lies on.
-  std::span<std::uint32_t> labels{};  ///< Of a surface triangle that holds the centre; else kNone.
+  std::span<std::uint32_t> labels{};  ///< A surface triangle that holds the centre; else kNone.
 };
 
 /// Samples a TIN at the centres of pixels. What it writes does not depend on the order of the
