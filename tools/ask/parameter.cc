@@ -146,13 +146,13 @@ NumberRange range_at(const Parameter& p, Door door) noexcept {
 
 Parameter& Parameter::with_default() {
   default_value = std::visit(
-      [](const auto& into) -> std::string {
-        using Type = std::decay_t<decltype(into)>;
-        if constexpr (std::is_same_v<Type, std::string*>) return *into;
-        if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*into);
+      [](const auto& place) -> std::string {
+        using Type = std::decay_t<decltype(place)>;
+        if constexpr (std::is_same_v<Type, std::string*>) return *place;
+        if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*place);
         if constexpr (std::is_integral_v<std::remove_pointer_t<Type>> &&
                       !std::is_same_v<Type, bool*>) {
-          return std::to_string(*into);
+          return std::to_string(*place);
         }
         return {};
       },

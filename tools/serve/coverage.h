@@ -29,9 +29,9 @@ struct CoverageValue {
 struct Coverage {
   std::span<const MapPoint> positions;  ///< One: a Point; several: a MultiPoint. None: a Grid.
   Json grid_axes;                       ///< Axes of a Grid: x and y.
-  std::vector<std::size_t> shape;  ///< Lengths of the arrays' axes; one number: none.
-  std::vector<std::string> axes;   ///< Their names.
-  std::size_t size = 0;  ///< How many values there are.
+  std::vector<std::size_t> shape;       ///< Lengths of the arrays' axes; one number: none.
+  std::vector<std::string> axes;        ///< Their names.
+  std::size_t size = 0;                 ///< How many values there are.
   std::function<CoverageValue(std::size_t)> value;
 };
 
