@@ -88,7 +88,8 @@ LocatedPoint locate_on(const ReceivedMesh& mesh, MapPoint at) {
   const Place place = find_spot(mesh.tin, *spot, 0);
   LocatedPoint point = located_at(mesh.tin, mesh.facts.heights, *spot, place);
   if (point.state == PointState::kSurface) {
-    set_interval({mesh.certificate.deviation, {-kInfinity, kInfinity}}, mesh.facts, point);
+    set_interval({mesh.certificate.deviation, {-kInfinity, kInfinity}}, mesh.certificate.complete,
+                 mesh.facts, point);
   }
   return point;
 }
@@ -139,7 +140,8 @@ SightResult sight_on(const ReceivedMesh& mesh, const SightPair& pair, const Sigh
     result.certified_deviation = is_certain ? 0.0 : mesh.certificate.deviation;
     return result;
   }
-  result.verdict = verdict_of(view);
+  // An end that stands on the mesh may stand in a void of the full TIN, from which nothing is seen.
+  result.verdict = is_certain || request.absolute ? verdict_of(view) : SightVerdict::kUndecided;
   const bool is_measured = measure(view, facts, pair, request.wavelength, result);
   if (result.verdict == SightVerdict::kUndecided) {
     result.certified_deviation = mesh.certificate.deviation;
