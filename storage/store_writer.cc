@@ -41,8 +41,7 @@ constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
 void check_target(const std::string& path, const StoreWriterOptions& options) {
   if (!std::has_single_bit(options.page_bytes) || options.page_bytes < layout::kMinPageBytes ||
       options.page_bytes > layout::kMaxPageBytes) {
-    throw Error(ErrorCode::invalid_argument, "page_bytes must be a power of two from 4096 to 65536",
-                path);
+    refuse("page_bytes must be a power of two from 4096 to 65536", path);
   }
   struct stat target {};
   if (::stat(path.c_str(), &target) != 0) {
@@ -52,11 +51,10 @@ void check_target(const std::string& path, const StoreWriterOptions& options) {
     return;
   }
   if (!S_ISREG(target.st_mode)) {
-    throw Error(ErrorCode::invalid_argument, "the output exists and is no regular file", path);
+    refuse("the output exists and is no regular file", path);
   }
   if (!options.overwrite) {
-    throw Error(ErrorCode::invalid_argument, "the file exists; remove it, or ask for overwriting",
-                path);
+    refuse("the file exists; remove it, or ask for overwriting", path);
   }
 }
 
@@ -196,8 +194,7 @@ void StoreWriterImpl::start(const HeightEncoding& heights) {
     index_.emplace(files_, folder_, stem_, heights);
   }
   if (!(*heights_ == heights)) {
-    throw Error(ErrorCode::invalid_argument,
-                "all segments of a file, and its facts, need one height encoding", path_);
+    refuse("all segments of a file, and its facts, need one height encoding", path_);
   }
 }
 
@@ -317,10 +314,10 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
                               const std::string& metadata_json) {
   PTIN_CHECK(!published_);
   if (const char* fault = fault_in(facts)) {
-    throw Error(ErrorCode::invalid_argument, fault, path_);
+    refuse(fault, path_);
   }
   if (const char* fault = fault_in(t0, facts)) {
-    throw Error(ErrorCode::invalid_argument, fault, path_);
+    refuse(fault, path_);
   }
   start(facts.heights);
   const IndexShape shape(index_->pages());

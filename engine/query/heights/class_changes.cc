@@ -31,8 +31,7 @@ struct GridReach {
 
 std::int32_t steps_above(double map_units, double step) {
   if (!(map_units >= 0.0)) {
-    throw Error(ErrorCode::invalid_argument, "the reach of a border must not be negative",
-                std::to_string(map_units));
+    refuse("the reach of a border must not be negative", std::to_string(map_units));
   }
   const double steps = std::ceil(map_units / step) + 1.0;
   return steps < double{kGridMax} ? static_cast<std::int32_t>(steps) : kGridMax;

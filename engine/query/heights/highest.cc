@@ -53,9 +53,9 @@ class HighestSearch final : private BestStarVisitor {
       filter_.box = region_->bounds();
       if (!std::holds_alternative<Window>(*request.region) &&
           !std::holds_alternative<Polygon>(*request.region)) {
-        throw Error(ErrorCode::invalid_argument,
-                    "the highest point is that of a window or a polygon; a point or a segment has "
-                    "no inside");
+        refuse(
+            "the highest point is that of a window or a polygon; a point or a segment has no "
+            "inside");
       }
       border_.emplace(*request.region, facts_.map, facts_.bounds);
     }
@@ -85,7 +85,7 @@ class HighestSearch final : private BestStarVisitor {
  private:
   static const HighestRequest& checked(const HighestRequest& request) {
     if (request.listed == 0) {
-      throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
+      refuse("no vertex is asked for: expected at least one");
     }
     return request;
   }

@@ -32,11 +32,10 @@ std::vector<PointOnCurve> along_the_curve(std::span<const MapPoint> points, cons
       context.check_stop();
     }
     if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y)) {
-      throw Error(ErrorCode::invalid_argument,
-                  "point " + std::to_string(i) +
-                      " has a coordinate that is not a finite number: give map units of the "
-                      "terrain's CRS",
-                  store.path());
+      refuse(
+          "point " + std::to_string(i) +
+              " has a coordinate that is not a finite number: give map units of the terrain's CRS",
+          store.path());
     }
     const std::optional<Spot> spot = map.spot(points[i]);
     if (spot && contains(facts.bounds, *spot)) {  // other points keep the state kOutside

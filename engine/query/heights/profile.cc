@@ -127,7 +127,7 @@ class Profiling {
           {hilbert_position(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), i});
     }
     if (!lines.empty() && order.empty()) {
-      throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
+      refuse(no_length(lines.size()));
     }
     station_bytes_ = stations.bytes_within(request_.limits.memory_bytes);
     std::sort(order.begin(), order.end(), [](const OrderedLine& a, const OrderedLine& b) {

@@ -59,8 +59,7 @@ class IsolineExtraction {
         return sides.clip(line);
       };
     } else {
-      throw Error(ErrorCode::invalid_argument,
-                  "isolines are cut at a window or a polygon; a point or a segment has no inside");
+      refuse("isolines are cut at a window or a polygon; a point or a segment has no inside");
     }
   }
 

@@ -28,42 +28,37 @@ constexpr double kRecordsOfPixel = 128;
 constexpr std::uint64_t kLocatedTogether = 4096;
 constexpr std::int64_t kMostSide = INT32_MAX;
 
-[[noreturn]] void refuse(const std::string& what, const OpenedTerrain& terrain) {
-  throw Error(ErrorCode::invalid_argument, what, terrain.store().path());
-}
-
-void check(const OpenedTerrain& terrain, const RasterRequest& request) {
+void check(const std::string& file, const RasterRequest& request) {
   for (const double number : {request.lattice.origin.x, request.lattice.origin.y,
                               request.lattice.step_x, request.lattice.step_y}) {
     if (!std::isfinite(number)) {
-      refuse("the raster's origin or step is not a finite number: give map units", terrain);
+      refuse("the raster's origin or step is not a finite number: give map units", file);
     }
   }
   if (request.lattice.step_x == 0 || request.lattice.step_y == 0) {
     refuse("the raster's step is 0: give the distance between the centres of pixels, map units",
-           terrain);
+           file);
   }
   const PixelRect& p = request.pixels;
   if (p.width < 1 || p.height < 1 || p.width > kMostSide || p.height > kMostSide) {
     refuse("the raster has " + std::to_string(p.width) + " x " + std::to_string(p.height) +
                " pixels: give from 1 to 2^31 - 1 columns and rows",
-           terrain);
+           file);
   }
   constexpr std::int64_t kMostIndex = std::int64_t{1} << 53;  // beyond it centres fall together
   if (std::max(p.column, p.row) > kMostIndex || std::min(p.column, p.row) < -kMostIndex) {
     refuse("the raster begins at column " + std::to_string(p.column) + " and row " +
                std::to_string(p.row) + ": give numbers from -2^53 to 2^53",
-           terrain);
+           file);
   }
   if (request.block_width < 1 || request.block_height < 1) {
-    refuse("a block of the raster has no pixel: give sides of at least 1", terrain);
+    refuse("a block of the raster has no pixel: give sides of at least 1", file);
   }
   if (!(request.lattice.margin.x >= 0 && request.lattice.margin.y >= 0)) {
-    refuse("the raster's margin is negative or not a number: give map units >= 0", terrain);
+    refuse("the raster's margin is negative or not a number: give map units >= 0", file);
   }
   if (request.as_fine_as_pixels && (request.detail.tolerance || request.detail.vertices)) {
-    refuse("both a level of detail and one as fine as the pixels are asked for: ask for one",
-           terrain);
+    refuse("both a level of detail and one as fine as the pixels are asked for: ask for one", file);
   }
 }
 
@@ -90,7 +85,7 @@ class RasterReading {
   RasterReading(const OpenedTerrain& terrain, const RasterRequest& request)
       : terrain_(terrain),
         facts_(terrain.store().facts()),
-        request_((check(terrain, request), request)),
+        request_((check(terrain.store().path(), request), request)),
         context_(request.limits, terrain.store().path()),
         asked_(detail_of(terrain, request, context_)),
         detail_(asked_, terrain.record_source(), context_),

@@ -46,19 +46,18 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
 std::optional<Growth> growth_of(const RefineRequest& request, const StoreFile& store) {
   const DetailRequest& detail = request.detail;
   if ((detail.tolerance ? 1 : 0) + (detail.vertices ? 1 : 0) + (request.triangles ? 1 : 0) > 1) {
-    throw Error(ErrorCode::invalid_argument,
-                "of a tolerance, a number of vertices and a number of triangles more than one is "
-                "given: give one of them");
+    refuse(
+        "of a tolerance, a number of vertices and a number of triangles more than one is given: "
+        "give one of them");
   }
   if (detail.vertices) return Growth{records_of_first(*detail.vertices, store)};
   if (!request.triangles) return std::nullopt;
   const std::uint64_t t0 = store.t0().triangles.size();
   if (*request.triangles < t0) {
-    throw Error(ErrorCode::invalid_argument,
-                std::to_string(*request.triangles) +
-                    " triangles are asked for, but the coarsest TIN has " + std::to_string(t0) +
-                    ": ask for at least that many",
-                store.path());
+    refuse(std::to_string(*request.triangles) +
+               " triangles are asked for, but the coarsest TIN has " + std::to_string(t0) +
+               ": ask for at least that many",
+           store.path());
   }
   return Growth{std::min(*request.triangles - t0, 2 * store.record_count()),
                 Growth::Of::kTriangles};

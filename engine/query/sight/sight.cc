@@ -20,14 +20,10 @@ namespace ptin {
 
 namespace {
 
-[[noreturn]] void throw_invalid(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
 void check(const SightRequest& r) {
   ptin::check(r.curvature);
   if (!(r.wavelength >= 0) || !std::isfinite(r.wavelength)) {
-    throw_invalid("the wavelength is negative or not finite");
+    refuse("the wavelength is negative or not finite");
   }
 }
 
@@ -121,11 +117,11 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
 Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
   constexpr double kMost = 1e30;  // differences and products of such heights are finite
   if (!(std::abs(height) <= kMost)) {
-    throw_invalid("the height of an end is not a finite number, or beyond 1e30");
+    refuse("the height of an end is not a finite number, or beyond 1e30");
   }
   const std::optional<Spot> spot = map_.spot(p);
   if (!spot) {
-    throw_invalid("an end lies too far from the terrain: give map units of its CRS");
+    refuse("an end lies too far from the terrain: give map units of its CRS");
   }
   return *spot;
 }
@@ -136,7 +132,7 @@ double SightSolver::Impl::ground_length(const SightPair& pair) const {
                             : std::sqrt((pair.b.x - pair.a.x) * (pair.b.x - pair.a.x) +
                                         (pair.b.y - pair.a.y) * (pair.b.y - pair.a.y));
   if (!std::isfinite(length)) {
-    throw_invalid("the distance between the ends is not known: they may lie off the ellipsoid");
+    refuse("the distance between the ends is not known: they may lie off the ellipsoid");
   }
   return length;
 }

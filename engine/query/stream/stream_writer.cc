@@ -337,7 +337,7 @@ void Writer::send_head() {
 
 void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
   if (request_.metadata.size() > kMostMetadata) {
-    throw Error(ErrorCode::invalid_argument, "the stream's metadata is longer than 1 MiB");
+    refuse("the stream's metadata is longer than 1 MiB");
   }
   const StoreFacts& f = store_.facts();
   const Certificate now = certificate_from(splits, 0);

@@ -19,17 +19,14 @@ constexpr double kLargest = 1e100;
 void check(const VolumeRequest& request, std::span<const double> levels) {
   const auto is_level = [](double level) { return std::abs(level) <= kLargest; };
   if (levels.empty() || !std::all_of(levels.begin(), levels.end(), is_level)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the level of a volume must be a finite number, no larger than 1e100");
+    refuse("the level of a volume must be a finite number, no larger than 1e100");
   }
   if (levels.size() > 1 && request.other != nullptr) {
-    throw Error(ErrorCode::invalid_argument,
-                "several levels are asked for beside another terrain, which stands in their place");
+    refuse("several levels are asked for beside another terrain, which stands in their place");
   }
   const double scale = request.other_height_scale;
   if (!(scale >= 1 / kLargest && scale <= kLargest)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the scale of the other terrain's heights must be a number above 0");
+    refuse("the scale of the other terrain's heights must be a number above 0");
   }
 }
 
