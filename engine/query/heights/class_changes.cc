@@ -2,7 +2,6 @@
 #include "engine/query/heights/class_changes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -177,11 +176,7 @@ class ChangeCount {
 }  // namespace
 
 ClassChanges class_changes(const OpenedTerrain& terrain, const ClassChangesRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  ClassChanges changes = ChangeCount(terrain, request).run();
-  changes.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return changes;
+  return timed([&] { return ChangeCount(terrain, request).run(); });
 }
 
 }  // namespace ptin

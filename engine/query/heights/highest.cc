@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -231,11 +230,7 @@ class HighestSearch final : private BestStarVisitor {
 }  // namespace
 
 HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  HighestResult result = HighestSearch(terrain, request).run();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return HighestSearch(terrain, request).run(); });
 }
 
 }  // namespace ptin

@@ -75,8 +75,7 @@ LocateResult locate_in_groups(const OpenedTerrain& terrain, std::span<const MapP
   result.certified_deviation = detail.certificate().deviation;
   result.exact = detail.is_exact(store.facts());
   result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cost.seconds = seconds_since(start);
   return result;
 }
 

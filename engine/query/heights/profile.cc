@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -249,11 +248,7 @@ class Profiling {
 ProfileResult profile_of(const OpenedTerrain& terrain,
                          std::span<const std::span<const MapPoint>> lines,
                          const ProfileRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  ProfileResult result = Profiling(terrain, request).run(lines);
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return Profiling(terrain, request).run(lines); });
 }
 
 }  // namespace

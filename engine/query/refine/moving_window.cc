@@ -65,8 +65,7 @@ MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& 
   result.pages_examined = pages.size();
   result.certificate = errors_.certificate();
   result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cost.seconds = seconds_since(start);
   return result;
 }
 

@@ -140,8 +140,7 @@ class Writer {
     if (!summary_.is_cut) send_end(mesh.tin());
     context_.cost.records_applied = summary_.splits;
     summary_.cost = context_.cost;
-    summary_.cost.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary_.cost.seconds = seconds_since(start);
     return summary_;
   }
 

@@ -188,8 +188,7 @@ std::vector<VolumeResult> volumes(const OpenedTerrain& terrain, const VolumeRequ
   const auto start = std::chrono::steady_clock::now();
   check(request, levels);
   std::vector<VolumeResult> results = Measuring(terrain, request, levels).run();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   for (VolumeResult& result : results) result.cost.seconds = seconds;
   return results;
 }
