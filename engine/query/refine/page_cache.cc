@@ -22,7 +22,6 @@ void PageCache::announce(std::span<const PageId> pages, QueryContext& context) c
 
 std::span<const VertexSplit> PageCache::records(PageId page, QueryContext& context) {
   if (const auto place = places_.find(index_of(page)); place != places_.end()) {
-    ++hits_;
     entries_.splice(entries_.begin(), entries_, place->second);
     return place->second->records;
   }

@@ -35,8 +35,6 @@ class PageCache {
 
   [[nodiscard]] std::uint64_t limit_bytes() const noexcept { return limit_bytes_; }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
-  /// Calls of records() whose page was in the cache.
-  [[nodiscard]] std::uint64_t hits() const noexcept { return hits_; }
 
  private:
   struct Entry {
@@ -49,7 +47,6 @@ class PageCache {
   const StoreFile& store_;
   std::uint64_t limit_bytes_;
   std::uint64_t bytes_ = 0;
-  std::uint64_t hits_ = 0;
   std::list<Entry> entries_;  ///< The one used last comes first.
   std::unordered_map<std::uint64_t, std::list<Entry>::iterator> places_;
 };
