@@ -2,7 +2,6 @@
 #include "engine/query/raster/raster.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -132,9 +131,6 @@ class RasterReading {
   /// What a centre lies on is told by whether it has a height.
   [[nodiscard]] bool asks_surface() const noexcept { return request_.heights || request_.states; }
 
-  class Sampling;
-  class Gathering;
-
   const OpenedTerrain& terrain_;
   const StoreFacts& facts_;
   const RasterRequest& request_;
@@ -218,39 +214,6 @@ void RasterReading::tell_progress(std::int64_t more_pixels) {
   }
 }
 
-/// Takes the triangles of a place, and tells of progress with each page.
-class RasterReading::Sampling : public LivingVisitor {
- public:
-  Sampling(RasterReading& reading, PixelSampler<double>& sampler)
-      : reading_(reading), sampler_(sampler) {}
-  bool begin(std::size_t /*most_triangles*/) override {
-    reading_.tell_progress(0);
-    return true;
-  }
-  void take(const LivingTriangle& t) override { sampler_.add(t); }
-
- private:
-  RasterReading& reading_;
-  PixelSampler<double>& sampler_;
-};
-
-/// Gathers the triangles of normals, as far as memory allows.
-class RasterReading::Gathering : public LivingVisitor {
- public:
-  Gathering(RasterReading& reading, PixelNormals& normals, std::uint64_t most_bytes)
-      : reading_(reading), normals_(normals), most_bytes_(most_bytes) {}
-  bool begin(std::size_t most_triangles) override {
-    reading_.tell_progress(0);
-    return normals_.bytes_with(most_triangles) <= most_bytes_;
-  }
-  void take(const LivingTriangle& t) override { normals_.add(t); }
-
- private:
-  RasterReading& reading_;
-  PixelNormals& normals_;
-  std::uint64_t most_bytes_;
-};
-
 void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers) {
   const PixelCentres centres(facts_, request_.lattice, pixels);
   PixelSampler<double> sampler(facts_, centres, buffers);
@@ -258,7 +221,12 @@ void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers
     if (is_sparse(centres)) {
       locate(centres, buffers);
     } else {
-      Sampling sampling(*this, sampler);
+      VisitorOf sampling(
+          [&](std::size_t /*most_triangles*/) {
+            tell_progress(0);
+            return true;
+          },
+          [&](const LivingTriangle& t) { sampler.add(t); });
       LivingPlace place;
       place.box = centres.box();
       reader_.read(place, context_, sampling);
@@ -322,7 +290,13 @@ bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
   const PixelCentres centres(facts_, request_.lattice, part);
   if (!meets(centres.box(), facts_.bounds)) return true;
   PixelNormals normals(facts_, centres);
-  Gathering gathering(*this, normals, context_.left_beside(0));
+  const std::uint64_t most_bytes = context_.left_beside(0);
+  VisitorOf gathering(
+      [&](std::size_t most_triangles) {
+        tell_progress(0);
+        return normals.bytes_with(most_triangles) <= most_bytes;
+      },
+      [&](const LivingTriangle& t) { normals.add(t); });
   LivingPlace place;
   place.box = centres.box();
   if (!reader_.read(place, context_, gathering)) {
@@ -340,27 +314,24 @@ bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
   return true;
 }
 
-template <class Read>
-RasterResult timed(const OpenedTerrain& terrain, const RasterRequest& request, const Read& read) {
-  const auto start = std::chrono::steady_clock::now();
-  RasterReading reading(terrain, request);
-  read(reading);
-  RasterResult result = reading.result();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
-}
-
 }  // namespace
 
 RasterResult raster(const OpenedTerrain& terrain, const RasterRequest& request,
                     const RasterReceiver& receive) {
-  return timed(terrain, request, [&](RasterReading& reading) { reading.hand_over(receive); });
+  return timed([&] {
+    RasterReading reading(terrain, request);
+    reading.hand_over(receive);
+    return reading.result();
+  });
 }
 
 RasterResult raster(const OpenedTerrain& terrain, const RasterRequest& request,
                     std::span<double> heights, std::span<PointState> states) {
-  return timed(terrain, request, [&](RasterReading& reading) { reading.fill(heights, states); });
+  return timed([&] {
+    RasterReading reading(terrain, request);
+    reading.fill(heights, states);
+    return reading.result();
+  });
 }
 
 }  // namespace ptin
