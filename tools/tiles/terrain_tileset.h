@@ -55,7 +55,6 @@ class TerrainTileset {
   /// Whether there is such a tile. The root always is.
   [[nodiscard]] bool has_tile(std::int64_t level, std::int64_t x, std::int64_t y) const noexcept;
   [[nodiscard]] bool has_content(std::int64_t level, std::int64_t x, std::int64_t y) const noexcept;
-  [[nodiscard]] double geometric_error() const noexcept { return first_error_; }  ///< The root's.
   /// Positions of a level's tiles are multiples of this, metres.
   [[nodiscard]] double position_step(int level) const;
   [[nodiscard]] const TilePyramid& pyramid() const noexcept { return pyramid_; }
