@@ -121,7 +121,7 @@ TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, cons
   PixelSampler<float> sampler(facts, centres, {raster.heights, raster.states, raster.pages});
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
     if (t % kStopInterval == 0) stop_if_asked(stop, "drawing");
-    sampler.add(tin, t, has_pages ? refined.page_of_triangle[t] : kNone);
+    sampler.add(living_triangle(tin, t), has_pages ? refined.page_of_triangle[t] : kNone);
   }
   return raster;
 }

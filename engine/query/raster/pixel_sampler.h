@@ -34,7 +34,6 @@ class PixelSampler {
 
   /// Adds a triangle of the TIN. Cost: the pixels below it.
   void add(const LivingTriangle& t, std::uint32_t label = 0);
-  void add(const Tin& tin, TriangleId t, std::uint32_t label = 0);
 
  private:
   void add_void(const LivingTriangle& t);

@@ -36,16 +36,6 @@ class CertifiedSurface final : public BoundedSurface {
   SurfaceBounds bounds_;
 };
 
-LivingTriangle triangle_of(const Tin& tin, TriangleId t) {
-  LivingTriangle made;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    made.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
-  }
-  made.is_void = tin.classes[t] != TriangleClass::kSurface;
-  return made;
-}
-
 Spot end_of(const ReceivedMesh& mesh, MapPoint p) {
   const std::optional<Spot> spot = SpotMap(mesh.facts.map, mesh.facts.bounds).spot(p);
   if (!spot) refuse("an end lies too far from the terrain: give map units of its CRS");
@@ -107,7 +97,7 @@ std::vector<ProfilePoint> profile_on(
   const SpotPath path({{line.spots[0], line.spots[1]}});
   GroundStretches stretches(path, mesh.facts.heights, memory_bytes);
   for (TriangleId t = 0; t < mesh.tin.triangles.size(); ++t) {
-    stretches.take(triangle_of(mesh.tin, t));
+    stretches.take(living_triangle(mesh.tin, t));
     if (!stretches.begin(0)) {
       throw Error(ErrorCode::resource_exhausted,
                   "the line crosses more triangles than the memory holds; take a shorter one");
