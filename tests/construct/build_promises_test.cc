@@ -13,7 +13,7 @@
 #include "engine/mesh/validate.h"
 #include "engine/query/questions.h"
 #include "tests/construct/made_raster.h"
-#include "tests/construct/surface_oracle.h"
+#include "tests/construct/store_promises.h"
 #include "tests/support/share_of_cases.h"
 
 namespace ptin {
@@ -44,28 +44,6 @@ bool can_be_a_file(const TestTerrain& terrain) {
          terrain.tile.units.heights.step == 1.0 && terrain.name != "the range of int32";
 }
 
-/// The first promise that a store breaks, in words.
-std::string check_store(const TestTerrain& terrain, const Terrain& tin) {
-  const RefinedTin full = tin.refine({});
-  if (!(oracle::named_triangles(full.tin) == oracle::named_triangles(terrain.full))) {
-    return "P1: the full TIN is another one";
-  }
-  for (const double tolerance : {0.0, 0.3, 1.0, 4.0, 25.0, 1e9}) {
-    RefineRequest request;
-    request.detail.tolerance = tolerance;
-    const RefinedTin refined = tin.refine(request);
-    std::string fault = validate(refined.tin);
-    fault = fault.empty() ? oracle::check_samples(terrain, refined.tin, tolerance) : fault;
-    fault = fault.empty()
-                ? oracle::check_deviation(terrain, refined.tin, refined.certified_deviation)
-                : fault;
-    if (!fault.empty()) {
-      return fault;
-    }
-  }
-  return {};
-}
-
 void expect_promises(const TestTerrain& terrain, std::int64_t tile, CostModel cost) {
   SCOPED_TRACE(terrain.name + ", tiles of " + std::to_string(tile));
   const oracle::WrittenRaster raster(file_of(terrain));
@@ -74,7 +52,7 @@ void expect_promises(const TestTerrain& terrain, std::int64_t tile, CostModel co
   options.tile = tile;
   options.cost = cost;
   build({raster.path()}, folder.file("out.ptin"), options, {});
-  EXPECT_EQ(check_store(terrain, Terrain::open(folder.file("out.ptin"))), "");
+  EXPECT_EQ(oracle::check_store(terrain, Terrain::open(folder.file("out.ptin"))), "");
 }
 
 TEST(BuildOverTiles, KeepsItsPromisesOnNastyRasters) {

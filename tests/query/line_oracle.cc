@@ -7,11 +7,11 @@
 
 namespace ptin::reference {
 
-namespace {
-
 Rational cross(const RationalPoint& a, const RationalPoint& b, const RationalPoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
+
+namespace {
 
 std::array<RationalPoint, 3> corners(const Tin& tin, TriangleId t) {
   const Triangle& triangle = tin.triangles[t];

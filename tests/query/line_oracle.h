@@ -4,6 +4,7 @@
 // no code with the walks.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <random>
 #include <set>
@@ -26,6 +27,13 @@ struct RationalPoint {
 [[nodiscard]] RationalPoint rational_of(Spot s);
 [[nodiscard]] RationalPoint rational_of(GridPoint p);
 [[nodiscard]] Rational rational_of(Int128 v);
+/// Twice the area of a triangle, positive where its corners go round to the left.
+[[nodiscard]] Rational cross(const RationalPoint& a, const RationalPoint& b,
+                             const RationalPoint& c);
+/// Whether both are the same number, or both are none.
+[[nodiscard]] inline bool same_number(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
 
 /// Closed triangles that hold the point.
 [[nodiscard]] std::vector<TriangleId> triangles_at(const Tin& tin, const RationalPoint& p);

@@ -29,8 +29,8 @@ NumberKind kind(const std::string& text) {
 
 using Row = std::vector<double>;
 
-std::vector<Row> read(const std::string& text, const std::string& name = "points.xyz",
-                      const std::vector<std::string>& columns = {}) {
+std::vector<Row> rows_in(const std::string& text, const std::string& name = "points.xyz",
+                         const std::vector<std::string>& columns = {}) {
   const MemoryFile file(name, text);
   XyzReader reader(file.path(), columns);
   std::vector<Row> rows;
@@ -44,7 +44,7 @@ std::vector<Row> read(const std::string& text, const std::string& name = "points
 void expect_line_refused(const std::string& text, const std::string& line,
                          const std::string& word) {
   try {
-    read(text);
+    rows_in(text);
     FAIL() << "accepted " << text;
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
@@ -111,35 +111,36 @@ RC_GTEST_PROP(ParseNumber, AgreesWithTheLibrary, ()) {
 
 TEST(XyzReader, ReadsEverySeparator) {
   const std::vector<Row> expected{{1, 2, 3.5}, {-4, 5, 6}};
-  EXPECT_EQ(read("1 2 3.5\n-4 5 6\n"), expected);
-  EXPECT_EQ(read("1\t2\t3.5\n-4\t 5\t6"), expected);
-  EXPECT_EQ(read("1,2,3.5\n-4, 5 ,6\n"), expected);
-  EXPECT_EQ(read("1;2;3.5\r\n-4;5;6\r\n"), expected);
-  EXPECT_EQ(read("   1   2   3.5  \n  -4 5 6  \n"), expected);
+  EXPECT_EQ(rows_in("1 2 3.5\n-4 5 6\n"), expected);
+  EXPECT_EQ(rows_in("1\t2\t3.5\n-4\t 5\t6"), expected);
+  EXPECT_EQ(rows_in("1,2,3.5\n-4, 5 ,6\n"), expected);
+  EXPECT_EQ(rows_in("1;2;3.5\r\n-4;5;6\r\n"), expected);
+  EXPECT_EQ(rows_in("   1   2   3.5  \n  -4 5 6  \n"), expected);
 }
 
 TEST(XyzReader, PassesOverCommentsEmptyLinesAndFurtherColumns) {
-  EXPECT_EQ(read("# made by hand\n\n1 2 3 255 7\n  # more\n\r\n4 5 6 0 0\n\n"),
+  EXPECT_EQ(rows_in("# made by hand\n\n1 2 3 255 7\n  # more\n\r\n4 5 6 0 0\n\n"),
             (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}));
 }
 
 TEST(XyzReader, FindsTheColumnsThatAHeaderNames) {
   const std::vector<Row> expected{{1, 2, 3}};
-  EXPECT_EQ(read("x,y,z\n1,2,3\n"), expected);
-  EXPECT_EQ(read("id;Height;Easting;Northing\n9;3;1;2\n"), expected);
-  EXPECT_EQ(read("\"LAT\",\"LON\",\"ELEVATION\"\n2,1,3\n"), expected);
-  EXPECT_EQ(read("name longitude latitude altitude\npeak 1 2 3\n"), expected);
-  EXPECT_EQ(read("\xEF\xBB\xBFX Y Z\n1 2 3\n"), expected);
+  EXPECT_EQ(rows_in("x,y,z\n1,2,3\n"), expected);
+  EXPECT_EQ(rows_in("id;Height;Easting;Northing\n9;3;1;2\n"), expected);
+  EXPECT_EQ(rows_in("\"LAT\",\"LON\",\"ELEVATION\"\n2,1,3\n"), expected);
+  EXPECT_EQ(rows_in("name longitude latitude altitude\npeak 1 2 3\n"), expected);
+  EXPECT_EQ(rows_in("\xEF\xBB\xBFX Y Z\n1 2 3\n"), expected);
 }
 
 TEST(XyzReader, TakesTheColumnsThatTheCallerNames) {
   const std::vector<Row> expected{{1, 2, 3}};
-  EXPECT_EQ(read("9,2,1,3,GND\n", "p.csv", {"id", "y", "x", "z", "code"}), expected);
-  EXPECT_EQ(read("P9,2,1,3,GND\n", "p.csv", {"P", "N", "E", "Z"}), expected) << "the rest has none";
-  EXPECT_EQ(read("id;a;b;c\n9;3;1;2\n", "p.csv", {"-", "h", "lon", "lat"}), expected);
+  EXPECT_EQ(rows_in("9,2,1,3,GND\n", "p.csv", {"id", "y", "x", "z", "code"}), expected);
+  EXPECT_EQ(rows_in("P9,2,1,3,GND\n", "p.csv", {"P", "N", "E", "Z"}), expected)
+      << "the rest has none";
+  EXPECT_EQ(rows_in("id;a;b;c\n9;3;1;2\n", "p.csv", {"-", "h", "lon", "lat"}), expected);
   const auto refusal = [](const std::string& text, const std::vector<std::string>& columns) {
     try {
-      read(text, "p.csv", columns);
+      rows_in(text, "p.csv", columns);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::invalid_argument);
       return std::string(e.what());
@@ -166,15 +167,15 @@ TEST(XyzReader, RefusesAFirstColumnThatNumbersTheRows) {
   expect_line_refused(points("", {1, 2, 3, 4}, ""), "4", "--columns id x y z");
   expect_line_refused(points("# a comment\n", {101, 102, 103}, ".25"), "4", "numbers the lines");
   expect_line_refused(points("", {1, 2, 5, 6, 9}, ".25"), "5", "none of them twice, the last as 9");
-  EXPECT_EQ(read(points("", {1, 2}, ".25")).size(), 2U) << "by chance";
-  EXPECT_EQ(read(points("", {1, 2, 3, 3}, ".25")).size(), 4U) << "a row of a grid";
-  EXPECT_EQ(read(points("", {1, 2, 5}, "")).size(), 3U) << "whole as its neighbours are";
+  EXPECT_EQ(rows_in(points("", {1, 2}, ".25")).size(), 2U) << "by chance";
+  EXPECT_EQ(rows_in(points("", {1, 2, 3, 3}, ".25")).size(), 4U) << "a row of a grid";
+  EXPECT_EQ(rows_in(points("", {1, 2, 5}, "")).size(), 3U) << "whole as its neighbours are";
   expect_line_refused(points("", {3, 1, 2, 17}, ".25"), "4", "the last as 17");
   expect_line_refused(points("", {9, 8, 7}, ".25"), "3", "the last as 7");
   expect_line_refused("1.0,5.5,2,3\n2.0,5.5,3,3\n3.0,6.5,2,3\n", "3", "one by one to 3");
-  EXPECT_EQ(read("1.5,5.5,2,3\n2.0,5.5,3,3\n3.0,6.5,2,3\n").size(), 3U);
-  EXPECT_EQ(read(points("x,y,z,w,code\n", {1, 2, 3}, ".25")).size(), 3U);
-  EXPECT_EQ(read(points("", {1, 2, 3}, ".25"), "p.csv", {"x", "y", "z"}).size(), 3U);
+  EXPECT_EQ(rows_in("1.5,5.5,2,3\n2.0,5.5,3,3\n3.0,6.5,2,3\n").size(), 3U);
+  EXPECT_EQ(rows_in(points("x,y,z,w,code\n", {1, 2, 3}, ".25")).size(), 3U);
+  EXPECT_EQ(rows_in(points("", {1, 2, 3}, ".25"), "p.csv", {"x", "y", "z"}).size(), 3U);
 }
 
 TEST(XyzReader, NamesUtf16) {
@@ -196,22 +197,22 @@ TEST(XyzReader, NamesUtf16) {
 // Number, easting and northing of points without a height.
 TEST(XyzReader, RefusesACountBesideDecimalsWhereNoColumnIsLeftOver) {
   expect_line_refused("1 2.5 3\n2 2.5 3\n3 2.5 4\n", "3", "--columns x y z if they are these");
-  EXPECT_EQ(read("1 2.5 3\n2 2.5 3\n3 2.5 4\n", "p.xyz", {"x", "y", "z"}).size(), 3U);
-  EXPECT_EQ(read("1 2 3\n2 2 3\n3 2 4\n").size(), 3U) << "whole as its neighbours are";
-  EXPECT_EQ(read("1 2.5 3\n3 2.5 3\n2 2.5 4\n").size(), 3U) << "not one by one";
+  EXPECT_EQ(rows_in("1 2.5 3\n2 2.5 3\n3 2.5 4\n", "p.xyz", {"x", "y", "z"}).size(), 3U);
+  EXPECT_EQ(rows_in("1 2 3\n2 2 3\n3 2 4\n").size(), 3U) << "whole as its neighbours are";
+  EXPECT_EQ(rows_in("1 2.5 3\n3 2.5 3\n2 2.5 4\n").size(), 3U) << "not one by one";
 }
 
 TEST(XyzReader, RefusesAHeaderThatNamesACoordinateTwice) {
   expect_line_refused("x,y,X,z\n1,2,3,4\n", "1", "two columns 'x'");
   expect_line_refused("id,x,y,z,z\n1,2,3,4,5\n", "1", "--columns");
-  EXPECT_EQ(read("id,x,y,z,id\n1,2,3,4,5\n").size(), 1U) << "no coordinate";
-  EXPECT_EQ(read("lon,lat,x,y,z\n1,2,3,4,5\n").size(), 1U) << "x stands before lon";
+  EXPECT_EQ(rows_in("id,x,y,z,id\n1,2,3,4,5\n").size(), 1U) << "no coordinate";
+  EXPECT_EQ(rows_in("lon,lat,x,y,z\n1,2,3,4,5\n").size(), 1U) << "x stands before lon";
 }
 
 TEST(XyzReader, FindsNoPointInAnEmptyFile) {
-  EXPECT_TRUE(read("").empty());
-  EXPECT_TRUE(read("\n# nothing\n").empty());
-  EXPECT_TRUE(read("x y z\n").empty());
+  EXPECT_TRUE(rows_in("").empty());
+  EXPECT_TRUE(rows_in("\n# nothing\n").empty());
+  EXPECT_TRUE(rows_in("x y z\n").empty());
 }
 
 TEST(XyzReader, NamesTheLineOfAFault) {
@@ -244,7 +245,7 @@ TEST(XyzReader, ReadsLinesAcrossItsBuffer) {
   for (int i = 0; i < 200'000; ++i) {
     text += std::to_string(i) + " " + std::to_string(-i) + " 0.5\n";
   }
-  const auto rows = read(text);
+  const auto rows = rows_in(text);
   ASSERT_EQ(rows.size(), 200'000U);
   for (int i = 0; i < 200'000; ++i) {
     ASSERT_EQ(rows[static_cast<std::size_t>(i)], (Row{double(i), double(-i), 0.5}));
@@ -265,7 +266,7 @@ TEST(XyzReader, SaysThatAFileDoesNotExist) {
 
 TEST(XyzReader, UnpacksGzip) {
   for (const char* name : {"points.xyz.gz", "POINTS.XYZ.GZ", "points.csv.Gz"}) {
-    EXPECT_EQ(read(packed("1 2 3\n4 5 6\n"), name), (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}))
+    EXPECT_EQ(rows_in(packed("1 2 3\n4 5 6\n"), name), (std::vector<Row>{{1, 2, 3}, {4, 5, 6}}))
         << name;
     EXPECT_TRUE(is_packed(name)) << name;
   }
@@ -285,7 +286,7 @@ TEST(XyzReader, ReportsPackedFilesThatAreDamagedOrCutShort) {
   for (const std::string& content :
        {whole.substr(0, whole.size() / 2), damaged, std::string("no gzip")}) {
     try {
-      read(content, "points.xyz.gz");
+      rows_in(content, "points.xyz.gz");
       FAIL() << "accepted";
     } catch (const Error& e) {
       EXPECT_TRUE(e.code() == ErrorCode::io_error || e.code() == ErrorCode::invalid_argument)
@@ -293,7 +294,7 @@ TEST(XyzReader, ReportsPackedFilesThatAreDamagedOrCutShort) {
     }
   }
   try {
-    read("", "points.xyz.gz");
+    rows_in("", "points.xyz.gz");
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::invalid_argument) << e.what();

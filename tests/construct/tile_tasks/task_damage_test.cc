@@ -85,8 +85,8 @@ std::optional<TileId> tile_read_by(const Task& task, TileFile file) {
 }
 
 /// Which file, how it is damaged, and whether the reader is of a tile above level 1.
-using Case = std::tuple<TileFile, Damage, bool>;
-class DamagedTaskFile : public testing::TestWithParam<Case> {};
+using DamageCase = std::tuple<TileFile, Damage, bool>;
+class DamagedTaskFile : public testing::TestWithParam<DamageCase> {};
 
 TEST_P(DamagedTaskFile, IsWrittenAnewByItsTask) {
   const auto [file, how, is_above] = GetParam();
@@ -111,8 +111,8 @@ TEST_P(DamagedTaskFile, IsWrittenAnewByItsTask) {
   }
 }
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<DamageCase> cases() {
+  std::vector<DamageCase> all;
   for (const TileFile file : {TileFile::kPushed, TileFile::kSegment, TileFile::kBounds,
                               TileFile::kPages, TileFile::kDescriptions}) {
     for (const Damage how : {Damage::kFlipped, Damage::kCut, Damage::kRemoved}) {
@@ -126,7 +126,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-std::string case_name(const testing::TestParamInfo<Case>& of) {
+std::string case_name(const testing::TestParamInfo<DamageCase>& of) {
   static constexpr const char* kFiles[] = {"Pushed", "Segment", "Bounds", "Pages", "Descriptions"};
   static constexpr const char* kHow[] = {"Flipped", "Cut", "Removed"};
   const auto [file, how, is_above] = of.param;

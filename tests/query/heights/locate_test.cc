@@ -28,6 +28,7 @@ using reference::Hierarchy;
 using reference::nasty_spot;
 using reference::Rational;
 using reference::rational_of;
+using reference::same_number;
 using reference::TemporaryStore;
 
 void check_exact(const Hierarchy& h, Spot q, const LocatedPoint& point) {
@@ -121,8 +122,6 @@ std::vector<MapPoint> random_points(const StoreFacts& f, std::size_t count, std:
   return points;
 }
 
-bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-
 TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
   const Terrain& terrain = reference::built_terrain("coast_257.tif");
   const std::vector<MapPoint> points = random_points(terrain.store().facts(), 20000, 3);
@@ -131,19 +130,19 @@ TEST(Locate, BatchesAnswerAsSinglePointsDoInTheOrderOfTheRequest) {
   for (std::size_t i = 0; i < points.size(); i += 97) {
     const LocateResult one = locate(terrain, {&points[i], 1});
     EXPECT_EQ(one.points[0].state, all.points[i].state);
-    EXPECT_TRUE(same(one.points[0].height, all.points[i].height));
+    EXPECT_TRUE(same_number(one.points[0].height, all.points[i].height));
   }
 }
 
 void expect_same(const LocatedPoint& a, const LocatedPoint& b) {
   EXPECT_EQ(a.state, b.state);
-  EXPECT_TRUE(same(a.height, b.height) && same(a.height_min, b.height_min) &&
-              same(a.height_max, b.height_max))
+  EXPECT_TRUE(same_number(a.height, b.height) && same_number(a.height_min, b.height_min) &&
+              same_number(a.height_max, b.height_max))
       << a.height << " in " << a.height_min << " to " << a.height_max << ", " << b.height << " in "
       << b.height_min << " to " << b.height_max;
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(a.triangle[i].position, b.triangle[i].position);
-    EXPECT_TRUE(same(a.triangle[i].height, b.triangle[i].height));
+    EXPECT_TRUE(same_number(a.triangle[i].height, b.triangle[i].height));
   }
 }
 
@@ -213,7 +212,7 @@ TEST(Locate, GroupsAreHalvedUntilTheyFitTheMemory) {
   const LocateResult tight = terrain.locate(points, request, AnswerBy::kSplits);
   EXPECT_GT(tight.cost.records_applied, free.cost.records_applied);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    ASSERT_TRUE(same(free.points[i].height, tight.points[i].height));
+    ASSERT_TRUE(same_number(free.points[i].height, tight.points[i].height));
   }
   request.limits.memory_bytes = 1000;
   EXPECT_THROW(static_cast<void>(terrain.locate(points, request, AnswerBy::kSplits)), Error);

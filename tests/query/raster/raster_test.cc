@@ -32,9 +32,8 @@ namespace ptin {
 namespace {
 
 using reference::Hierarchy;
+using reference::same_number;
 using reference::TemporaryStore;
-
-bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 std::size_t pixels_of(const RasterRequest& request) {
   return static_cast<std::size_t>(request.pixels.pixels());
@@ -133,9 +132,9 @@ RC_GTEST_PROP(Raster, GivesWhatLocateGivesAtTheCentres, (std::uint64_t seed)) {
     const Pixels blocks = gathered(terrain, request);
     for (std::size_t k = 0; k < centres.size(); ++k) {
       RC_ASSERT(pixels.states[k] == located.points[k].state);
-      RC_ASSERT(same(pixels.heights[k], located.points[k].height));
+      RC_ASSERT(same_number(pixels.heights[k], located.points[k].height));
       RC_ASSERT(blocks.states[k] == pixels.states[k]);
-      RC_ASSERT(same(blocks.heights[k], pixels.heights[k]));
+      RC_ASSERT(same_number(blocks.heights[k], pixels.heights[k]));
     }
   }
 }
@@ -231,7 +230,7 @@ TEST(Raster, OfAnyPartIsCutFromTheWhole) {
       const auto in_whole = static_cast<std::size_t>(
           (part.pixels.row - whole.pixels.row + at / 83) * whole.pixels.width + part.pixels.column -
           whole.pixels.column + at % 83);
-      ASSERT_TRUE(same(cut.heights[k], all.heights[in_whole])) << name << " " << k;
+      ASSERT_TRUE(same_number(cut.heights[k], all.heights[in_whole])) << name << " " << k;
       ASSERT_EQ(cut.states[k], all.states[in_whole]) << name << " " << k;
     }
   }

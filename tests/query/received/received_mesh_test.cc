@@ -26,6 +26,7 @@ namespace {
 
 using reference::Hierarchy;
 using reference::nasty_spot;
+using reference::same_number;
 
 constexpr std::uint64_t kMemory = std::uint64_t{1} << 28;
 
@@ -115,8 +116,6 @@ struct Received {
   Certificate certificate;
 };
 
-bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-
 RC_GTEST_PROP(ReceivedMesh, TellsTheHeightsOfItsLevelAndHoldsThoseOfTheFullTin,
               (std::uint64_t seed)) {
   Received r(seed, 0.1);
@@ -128,7 +127,7 @@ RC_GTEST_PROP(ReceivedMesh, TellsTheHeightsOfItsLevelAndHoldsThoseOfTheFullTin,
     const LocatedPoint full = r.terrain.locate({&at, 1}, {}).points[0];
     const LocatedPoint found = locate_on(r.mesh(), at);
     RC_ASSERT(found.state == level.state);
-    RC_ASSERT(same(found.height, level.height));
+    RC_ASSERT(same_number(found.height, level.height));
     if (found.state == PointState::kSurface && full.state == PointState::kSurface) {
       RC_ASSERT(found.height_min <= full.height && full.height <= found.height_max);
     }
@@ -151,7 +150,7 @@ RC_GTEST_PROP(ReceivedMesh, HasTheProfileOfItsLevelPointByPoint, (std::uint64_t 
     for (std::size_t k = 0; k < found.size(); ++k) {
       RC_ASSERT(found[k].position == level[k].position);
       RC_ASSERT(found[k].distance == level[k].distance);
-      RC_ASSERT(same(found[k].height, level[k].height));
+      RC_ASSERT(same_number(found[k].height, level[k].height));
       RC_ASSERT(found[k].state == level[k].state);
     }
   }
@@ -191,8 +190,8 @@ RC_GTEST_PROP(ReceivedMesh, DecidesLinesOfSightAsTheFileWhenNothingIsMissing,
   Received r(seed, std::nullopt);
   compare_sight(r, [](const SightResult& found, const SightResult& full) {
     RC_ASSERT(found.verdict == full.verdict);
-    RC_ASSERT(same(found.clearance_min, full.clearance_min));
-    RC_ASSERT(same(found.clearance_max, full.clearance_max));
+    RC_ASSERT(same_number(found.clearance_min, full.clearance_min));
+    RC_ASSERT(same_number(found.clearance_max, full.clearance_max));
     RC_ASSERT(found.obstruction.has_value() == full.obstruction.has_value());
   });
 }

@@ -10,10 +10,6 @@ namespace ptin::reference {
 
 namespace {
 
-Rational cross(const RationalPoint& o, const RationalPoint& a, const RationalPoint& b) {
-  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
 /// The convex hull, counter-clockwise (Andrew, 1979).
 RationalPolygon hull(RationalPolygon points) {
   const auto before = [](const RationalPoint& a, const RationalPoint& b) {
