@@ -64,7 +64,7 @@ void make_voids(TestTerrain& terrain, double longest) {
   terrain.slope = BuildOptions{}.void_slope;
 }
 
-struct Case {
+struct PointCase {
   PointKind kind;
   std::uint64_t points;
   std::int64_t tile;
@@ -72,7 +72,7 @@ struct Case {
   CostModel cost = CostModel::kError;
 };
 
-void expect_promises(const Case& c) {
+void expect_promises(const PointCase& c) {
   SCOPED_TRACE(name_of(c.kind) + ", " + std::to_string(c.points) + " points, tiles of " +
                std::to_string(c.tile) + (c.max_edge ? ", voids" : ""));
   TestTerrain terrain = terrain_of(c.kind, c.points, c.points);
@@ -107,14 +107,14 @@ TEST(PointsOverTiles, KeepTheirPromisesWithAlmostNothingInATile) {
 }
 
 TEST(PointsOverTiles, KeepTheirPromisesWithVoids) {
-  const std::vector<Case> cases = {{PointKind::kEven, 600, 8, 200.0},
-                                   {PointKind::kEven, 600, 8, 60.0, CostModel::kElevation},
-                                   {PointKind::kClusters, 600, 8, 2000.0},
-                                   {PointKind::kCorridor, 600, 8, 4000.0},
-                                   {PointKind::kGrid, 900, 8, 1.4},  // no triangle is left
-                                   {PointKind::kGrid, 900, 8, 1.5},  // no voids
-                                   {PointKind::kOutliers, 1200, 8, 300.0}};
-  for (const Case& c : test::some_of(cases)) {
+  const std::vector<PointCase> cases = {{PointKind::kEven, 600, 8, 200.0},
+                                        {PointKind::kEven, 600, 8, 60.0, CostModel::kElevation},
+                                        {PointKind::kClusters, 600, 8, 2000.0},
+                                        {PointKind::kCorridor, 600, 8, 4000.0},
+                                        {PointKind::kGrid, 900, 8, 1.4},  // no triangle is left
+                                        {PointKind::kGrid, 900, 8, 1.5},  // no voids
+                                        {PointKind::kOutliers, 1200, 8, 300.0}};
+  for (const PointCase& c : test::some_of(cases)) {
     expect_promises(c);
   }
 }

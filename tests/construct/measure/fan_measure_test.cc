@@ -31,13 +31,13 @@ double small_int(GridPoint p) { return noise(p) % 500; }
 double any_int(GridPoint p) { return static_cast<double>(noise(p)) - 2147483648.0; }
 double fraction(GridPoint p) { return static_cast<double>(static_cast<float>(noise(p)) * 1e-5F); }
 
-struct Case {
+struct FanCase {
   std::int32_t extent;
   HeightEncoding heights;
   double (*code)(GridPoint);
 };
 /// Narrow, at the edge of narrow, wide, and the whole grid; exact and rounded.
-const Case kCases[] = {
+const FanCase kCases[] = {
     {12, kInt, small_int},        {1000, kInt, small_int},        {1000, kInt, any_int},
     {300, kFloat, fraction},      {(1 << 25) - 9, kInt, any_int}, {(1 << 25) - 9, kFloat, fraction},
     {1 << 27, kInt, small_int},   {1 << 28, kFloat, fraction},    {kGridMax, kInt, any_int},
@@ -47,7 +47,7 @@ const Case kCases[] = {
 /// Calls visit(tile, star) for every vertex of some tiles of each case.
 template <class Visit>
 void for_each_star(std::uint64_t seeds, const Visit& visit) {
-  for (const Case& c : kCases) {
+  for (const FanCase& c : kCases) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       const StarTile made(seed, c.extent, {}, c.heights, c.code);
       StarSamples s;

@@ -80,7 +80,7 @@ TestTerrain terrain_in(const std::string& path, const std::string& folder) {
   return terrain;
 }
 
-struct Case {
+struct TinCase {
   PointKind kind;
   std::uint64_t points;
   std::int64_t tile;
@@ -88,7 +88,7 @@ struct Case {
   CostModel cost = CostModel::kError;
 };
 
-void expect_promises(const Case& c) {
+void expect_promises(const TinCase& c) {
   SCOPED_TRACE(name_of(c.kind) + ", " + std::to_string(c.points) + " points, tiles of " +
                std::to_string(c.tile) + ", holes " + std::to_string(c.holes_of_ten));
   const oracle::ScratchFolder folder;
