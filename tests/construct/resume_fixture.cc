@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/construct/hierarchy_fixture.h"
+
 namespace ptin::test {
 
 namespace {
@@ -65,20 +67,25 @@ std::string triangles_with_holes() {
 
 namespace {
 
+/// The raster of every build of one, which none changes.
+const std::string& path_of_raster() {
+  static const oracle::WrittenRaster raster(hills_with_a_lake());
+  return raster.path();
+}
+
 /// What a build that nobody interrupts writes. It is the same each time, since the file names its
-/// source without the folder, so it runs once a process; but rasters in memory have names of their
-/// own.
-const std::string& expected_of(SourceKind kind, const std::string& input,
-                               const BuildOptions& options) {
+/// source without the folder, so it runs once a process.
+const std::string& expected_of(const std::string& input, const BuildOptions& options) {
   static std::map<std::string, std::string> all;
-  const auto [found, is_new] = all.try_emplace(
-      kind == SourceKind::kRaster ? input
-                                  : std::filesystem::path(input).filename().string() +
-                                        (options.boundary.empty() ? "" : " with lines"));
+  const auto [found, is_new] = all.try_emplace(std::filesystem::path(input).filename().string() +
+                                               (options.boundary.empty() ? "" : " with lines"));
   if (is_new) {
     const oracle::ScratchFolder folder;
     const std::string plain = folder.file("plain.ptin");
-    build({input}, plain, options, {});
+    UnsyncedFiles files;
+    BuildResources resources;
+    resources.files = &files;
+    build({input}, plain, options, resources);
     found->second = oracle::bytes_of(plain);
   }
   return found->second;
@@ -88,8 +95,7 @@ const std::string& expected_of(SourceKind kind, const std::string& input,
 
 InterruptibleBuild::InterruptibleBuild(SourceKind kind) : kind_(kind) {
   if (kind == SourceKind::kRaster) {
-    raster_.emplace(hills_with_a_lake());
-    input_ = raster_->path();
+    input_ = path_of_raster();
   } else if (kind == SourceKind::kPoints || kind == SourceKind::kLines) {
     input_ = source_folder_.file("points.xyz");
     oracle::write_text(input_, scattered_points());
@@ -103,7 +109,7 @@ InterruptibleBuild::InterruptibleBuild(SourceKind kind) : kind_(kind) {
     input_ = source_folder_.file("mesh.obj");
     oracle::write_text(input_, triangles_with_holes());
   }
-  expected_ = &expected_of(kind, input_, options());
+  expected_ = &expected_of(input_, options());
 }
 
 BuildOptions InterruptibleBuild::options() const {
@@ -126,7 +132,11 @@ BuildResources InterruptibleBuild::resources() {
   return resources;
 }
 
-std::optional<ErrorCode> InterruptibleBuild::run(const BuildResources& resources) const {
+std::optional<ErrorCode> InterruptibleBuild::run(BuildResources resources) const {
+  UnsyncedFiles files;
+  if (resources.files == nullptr) {
+    resources.files = &files;
+  }
   try {
     build({input_}, output(), options(), resources);
   } catch (const Error& e) {

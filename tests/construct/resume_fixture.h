@@ -30,8 +30,9 @@ class InterruptibleBuild {
   [[nodiscard]] std::string output() const { return folder_.file("out.ptin"); }
   [[nodiscard]] const oracle::ScratchFolder& folder() const { return folder_; }
 
-  /// The code of the error that the build throws; none when it ends well.
-  [[nodiscard]] std::optional<ErrorCode> run(const BuildResources& resources) const;
+  /// The code of the error that the build throws; none when it ends well. Where no files are named,
+  /// they are the system's, never synced.
+  [[nodiscard]] std::optional<ErrorCode> run(BuildResources resources) const;
   /// Resumes with the system's files until the build ends well, and expects the bytes of one that
   /// was not interrupted, and nothing else in the folder.
   void expect_resumed_to_the_same_bytes() const;
@@ -39,7 +40,6 @@ class InterruptibleBuild {
  private:
   SourceKind kind_;
   oracle::ScratchFolder source_folder_, folder_;
-  std::optional<oracle::WrittenRaster> raster_;
   std::string input_;
   const std::string* expected_ = nullptr;  ///< Bytes of a build that was not interrupted.
 };

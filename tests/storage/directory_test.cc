@@ -2,6 +2,7 @@
 //
 // The directory: cells, bytes that are rounded outwards, what is read against a look at all pages.
 #include <algorithm>
+#include <map>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -16,6 +17,7 @@
 #include "storage/verify.h"
 #include "tests/storage/noting_source.h"
 #include "tests/storage/store_fixture.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin::test {
 namespace {
@@ -129,7 +131,8 @@ TEST(PointDirectory, NamesEachPageWithLivingStarsAtAPlace) {
       const std::int32_t on_line = i % 3 == 0 ? 0 : 1;
       places.push_back({x, y, x + on_line, y + (i % 5 == 0 ? 0 : 1)});
     }
-    for (const double level : {-1.0, 0.0, 0.5, 10.0, 1e30}) {
+    std::map<decltype(DirectoryPage::id), StarredRecords> pages;  // as the near store reads them
+    for (const double level : some_of({-1.0, 0.0, 0.5, 10.0, 1e30})) {
       for (const bool with_ties : {false, true}) {
         StarFilter filter;
         filter.level = level;
@@ -150,11 +153,14 @@ TEST(PointDirectory, NamesEachPageWithLivingStarsAtAPlace) {
                       true);
           }
           for (std::size_t k = 0; k < found[i].size(); ++k) {
-            StarredRecords whole, part;
-            stores.near->read_starred(found[i][k].id, whole, counters);
+            const auto [whole, is_new] = pages.try_emplace(found[i][k].id);
+            if (is_new) {
+              stores.near->read_starred(found[i][k].id, whole->second, counters);
+            }
+            StarredRecords part;
             const auto look = [&](const RecordPage& page) { page.decode(part); };
             stores.far->look_at(found[i][k], look, counters);
-            EXPECT_TRUE(are_same(whole, part));
+            EXPECT_TRUE(are_same(whole->second, part));
           }
         }
       }

@@ -239,8 +239,9 @@ TEST(CliBadInput, RegionsThatMissTheTerrainAreRefusedWithItsBounds) {
                           const std::vector<std::string>& region, const std::string& words) {
     arguments.insert(arguments.end(), region.begin(), region.end());
     const std::string option = region[0].starts_with('-') ? region[0] : "X Y";
-    expect_refusal(run_ptin(arguments), 2, "ptin: " + option + ": this misses the terrain");
-    expect_refusal(run_ptin(arguments), 2, words);
+    const Outcome outcome = run_ptin(arguments);
+    expect_refusal(outcome, 2, "ptin: " + option + ": this misses the terrain");
+    expect_refusal(outcome, 2, words);
     EXPECT_EQ(folder.names(), before) << arguments[0];
   };
   const std::string bounds = "x from 500015 to 500975, y from 3999025 to 3999985";

@@ -21,7 +21,7 @@ TEST(TileDelaunayOfMany, EveryKindIsOneTriangulation) {
   for (const PointKind kind : kPointKinds) {
     SCOPED_TRACE(name_of(kind));
     expect_one_triangulation(
-        buckets_of(kind, 200'000 / static_cast<std::size_t>(test::share_of_cases(2)), 2), 64);
+        buckets_of(kind, 200'000 / static_cast<std::size_t>(test::share_of_cases(4)), 2), 64);
   }
 }
 

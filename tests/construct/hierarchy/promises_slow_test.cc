@@ -46,15 +46,14 @@ void expect_full_again(const TestTerrain& terrain) {
   EXPECT_TRUE(oracle::named_triangles(tin) == oracle::named_triangles(terrain.full));
 }
 
-/// The side of a window in samples: what is checked there grows faster than its samples.
-int side_of(int whole) { return 2 * whole / (1 + test::share_of_cases(2)); }
-
-/// A window of a real raster; depths in samples.
-TestTerrain read_window(const std::string& path, std::int64_t x0, std::int64_t y0, std::int64_t w,
-                        std::int64_t h) {
+/// A square window of a real raster, of so many samples a side: of two thirds of them, where not all
+/// cases are asked for, since what is checked there grows faster than its samples. Depths in samples.
+TestTerrain read_window(const std::string& path, std::int64_t x0, std::int64_t y0,
+                        std::int64_t whole) {
   const RasterSource source = RasterSource::open({path}, {});
-  w = std::min(w, source.width() - x0);
-  h = std::min(h, source.height() - y0);
+  const std::int64_t side = 2 * whole / (1 + test::share_of_cases(2));
+  const std::int64_t w = std::min(side, source.width() - x0);
+  const std::int64_t h = std::min(side, source.height() - y0);
   std::vector<HeightBits> heights(static_cast<std::size_t>(w * h));
   std::vector<std::uint8_t> valid(heights.size());
   source.read({x0, y0, w, h}, heights, valid);
@@ -76,8 +75,8 @@ void expect_promises(TestTerrain started) {
 
 TEST(PromisesOnRealTerrain, HoldForTheTerrainsOfTheTree) {
   const std::string data = PTIN_TEST_DATA;
-  expect_promises(read_window(data + "/mountains_257.tif", 0, 0, side_of(150), 150));
-  expect_promises(read_window(data + "/coast_257.tif", 60, 100, 150, side_of(150)));
+  expect_promises(read_window(data + "/mountains_257.tif", 0, 0, 150));
+  expect_promises(read_window(data + "/coast_257.tif", 60, 100, 150));
   const PointSet points = read_points({data + "/ground_points.csv"}, {});
   std::size_t i = 0;
   TestTerrain terrain = oracle::make_points(
@@ -92,14 +91,11 @@ TEST(PromisesOnRealTerrain, HoldForLargerTerrains) {
   if (!std::filesystem::exists(std::filesystem::path(data) / "ned13_portland_nodata.tif")) {
     GTEST_SKIP() << "needs " << data;
   }
-  expect_promises(read_window(data + "/ned13_portland_nodata.tif", 100, 200, side_of(120), 120));
-  expect_promises(
-      read_window(data + "/lidar_dtm1m_slovenia_564_146.tif", 300, 300, side_of(120), 120));
-  expect_promises(read_window(data + "/dtm5m_austria_alr_float64.tif", 10, 10, side_of(120), 120));
-  expect_promises(
-      read_window(data + "/srtm1_n48w125_olympic_3601.tif", 2600, 1500, side_of(160), 160));
-  expect_promises(
-      read_window(data + "/srtm3_n53e027_minsk_uint16.tif", 300, 300, side_of(120), 120));
+  expect_promises(read_window(data + "/ned13_portland_nodata.tif", 100, 200, 120));
+  expect_promises(read_window(data + "/lidar_dtm1m_slovenia_564_146.tif", 300, 300, 120));
+  expect_promises(read_window(data + "/dtm5m_austria_alr_float64.tif", 10, 10, 120));
+  expect_promises(read_window(data + "/srtm1_n48w125_olympic_3601.tif", 2600, 1500, 160));
+  expect_promises(read_window(data + "/srtm3_n53e027_minsk_uint16.tif", 300, 300, 120));
 }
 
 TEST(PromisesOnRandomTerrain, HoldForManySeeds) {

@@ -45,13 +45,13 @@ test('cut anywhere it is what unstream makes of the same bytes', () => {
 });
 
 test('a stream that goes on from another is followed', () => {
-  const { store } = terrain('mountains_257', '--error', '20');
+  const { store, stream } = terrain('mountains_257', '--error', '20');
   ptin('stream', store, '--error', '5', '--have-error', '20', '-o', file('more.ptins'), '--overwrite');
-  const decoder = decoded(module, readFileSync(file('mountains_257.ptins')));
+  const decoder = decoded(module, readFileSync(stream));
   const first = decoder.numbering;
   decoder.feed(readFileSync(file('more.ptins')));
   assert.notEqual(decoder.numbering, first);
-  ptin('unstream', file('mountains_257.ptins'), file('more.ptins'), '-o', file('both.ply'), '--overwrite');
+  ptin('unstream', stream, file('more.ptins'), '-o', file('both.ply'), '--overwrite');
   assert.deepEqual(trianglesOf(decoder.mesh, decoder.facts), trianglesOfPly(file('both.ply')));
 });
 

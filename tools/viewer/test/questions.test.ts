@@ -87,10 +87,12 @@ for (const [name, of] of terrains) {
   });
 
   test(`profiles are those of the program, point by point: ${name}`, () => {
-    for (let i = 0; i < 12; ++i) {
-      const a = place(2 * i), b = place(2 * i + 1);
-      const told = (JSON.parse(ptin('profile', store, '--line', line(a, b), '--error', error, '--json')) as
-        { points: Array<MapPosition & { distance: number; height: number | null }> }).points;
+    const ends = Array.from({ length: 12 }, (_, i) => [place(2 * i), place(2 * i + 1)]);
+    const lines = `MULTILINESTRING(${ends.map(([a, b]) => `(${a.x} ${a.y}, ${b.x} ${b.y})`).join(', ')})`;
+    const all = (JSON.parse(ptin('profile', store, '--line', lines, '--error', error, '--json')) as
+      { points: Array<MapPosition & { line: number; distance: number; height: number | null }> }).points;
+    for (const [i, [a, b]] of ends.entries()) {
+      const told = all.filter((p) => p.line === i);
       const { stations, length } = questions.profile(asked, a, b);
       const last = told[told.length - 1].distance;
       // On the ellipsoid both formulas agree to a tenth of a millimetre.
@@ -108,11 +110,13 @@ for (const [name, of] of terrains) {
 
   test(`lines of sight never contradict the program's: ${name}`, () => {
     let decided = 0;
-    for (let i = 0; i < 25; ++i) {
-      const a = place(3 * i + 1), b = place(3 * i + 2);
-      const told = JSON.parse(ptin(
-        'sight', store, String(a.x), String(a.y), '40', String(b.x), String(b.y), '60', '--frequency', '450MHz', '--json')) as
-        { verdict: string; length: number; clearance: { min: number; max: number } | null };
+    const ends = Array.from({ length: 25 }, (_, i) => [place(3 * i + 1), place(3 * i + 2)]);
+    writeFileSync(file('pairs.txt'), ends.map(([a, b]) => `${a.x} ${a.y} 40 ${b.x} ${b.y} 60\n`).join(''));
+    const { pairs } = JSON.parse(ptin('sight', store, '--pairs', file('pairs.txt'), '--frequency', '450MHz', '--json')) as
+      { pairs: Array<{ verdict: string; length: number; clearance: { min: number; max: number } | null }> };
+    assert.equal(pairs.length, ends.length);
+    for (const [i, [a, b]] of ends.entries()) {
+      const told = pairs[i];
       const here = questions.sight(asked, a, 40, b, 60, 450e6);
       assert.ok(Math.abs(here.length - told.length) <= 1e-3, `${here.length} for ${told.length}`);
       if (here.verdict === 'unsure') continue;

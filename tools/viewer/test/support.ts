@@ -30,11 +30,11 @@ export function terrain(name: string, ...options: string[]): { store: string; st
   return built(join(data, `${name}.tif`), name, [], options);
 }
 
-/** The store of an input, built once, and its stream. */
+/** The store of an input and its stream, each made once. */
 function built(input: string, name: string, forBuild: string[], forStream: string[]): { store: string; stream: string } {
-  const store = file(`${name}.ptin`), stream = file(`${name}.ptins`);
+  const store = file(`${name}.ptin`), stream = file(`${[name, ...forStream].join(' ')}.ptins`);
   if (!existsSync(store)) ptin('build', input, ...forBuild, '-q', '-o', store);
-  ptin('stream', store, ...forStream, '-o', stream, '--overwrite');
+  if (!existsSync(stream)) ptin('stream', store, ...forStream, '-o', stream);
   return { store, stream };
 }
 
