@@ -66,6 +66,10 @@ TEST_F(Serve, DescribesItselfAsOpenApi) {
   // A number in hertz, or text with a unit.
   const json& of_sight = api["paths"]["/collections/{id}/sight"]["post"]["requestBody"]["content"];
   EXPECT_FALSE(of_sight["application/json"]["schema"]["properties"]["frequency"].contains("type"));
+  // A number, or text: nan.
+  const json& of_elevation = api["paths"]["/v1/{path}"]["post"]["requestBody"]["content"];
+  EXPECT_FALSE(
+      of_elevation["application/json"]["schema"]["properties"]["nodata_value"].contains("type"));
   EXPECT_FALSE(api["servers"].empty());
   EXPECT_EQ(api["security"], json::array());  // This service wants no token.
   EXPECT_FALSE(api["components"].contains("securitySchemes"));

@@ -43,6 +43,8 @@ TEST_F(Serve, AnswersElevationsToClientsOfOthers) {
   EXPECT_EQ(
       get("/v1/mountains?locations=10,10&nodata_value=-9999").json()["results"][0]["elevation"],
       -9999.0);
+  const json places = {{"locations", "10,10"}, {"nodata_value", -0.5}};
+  EXPECT_EQ(served_->post("/v1/mountains", places).json()["results"][0]["elevation"], -0.5);
   // The first one that has surface there answers.
   EXPECT_EQ(get("/v1/coast,mountains?locations=" + a).json()["results"][0]["dataset"], "mountains");
   // 38.5,-120.2 | 40.7,-120.95 | 43.252,-126.453: the example of the format's description.

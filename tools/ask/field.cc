@@ -17,23 +17,30 @@ Json& member_of(Json& object, std::string_view name) {
 
 }  // namespace
 
-void add_csv_value(LongText& text, const Json& value) {
+void add_csv_number(LongText& text, double value) {
+  if (std::isfinite(value)) text.number(value);
+}
+
+void add_csv_text(LongText& text, std::string_view value) {
+  // By RFC 4180, where it needs quotes to be read back as it is.
+  const bool is_quoted = value.find_first_of(",;\"\r\n\t") != std::string_view::npos ||
+                         value.starts_with('#') || value.starts_with(' ') || value.ends_with(' ');
+  if (!is_quoted) {
+    text.add(value);
+    return;
+  }
+  std::string quoted = "\"";
+  for (const char c : value) quoted.append(c == '"' ? 2 : 1, c);
+  text.add(quoted + "\"");
+}
+
+void add_csv_json(LongText& text, const Json& value) {
   if (value.is_string()) {
-    const auto& field = value.get_ref<const std::string&>();
-    // By RFC 4180, where it needs quotes to be read back as it is.
-    const bool is_quoted = field.find_first_of(",;\"\r\n\t") != std::string::npos ||
-                           field.starts_with('#') || field.starts_with(' ') || field.ends_with(' ');
-    if (!is_quoted) {
-      text.add(field);
-      return;
-    }
-    std::string quoted = "\"";
-    for (const char c : field) quoted.append(c == '"' ? 2 : 1, c);
-    text.add(quoted + "\"");
+    add_csv_text(text, value.get_ref<const std::string&>());
   } else if (value.is_boolean()) {
     text.add(value.get<bool>() ? "1" : "0");
   } else if (value.is_number_float()) {
-    if (const double number = value.get<double>(); std::isfinite(number)) text.number(number);
+    add_csv_number(text, value.get<double>());
   } else if (value.is_number()) {
     text.json(value);
   }

@@ -2,6 +2,7 @@
 #include "tools/ask/long_text.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/error.h"
@@ -47,7 +48,16 @@ LongText& LongText::add(std::string_view text) {
 LongText& LongText::number(double value) {
   constexpr std::size_t kMostDigits = 32;
   make_room(kMostDigits);
+  // An exact answer has its height as both of its bounds, and to find digits is what takes time.
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  if (last_bytes_ != 0 && bits == last_bits_) {
+    text_.append(text_, last_at_, last_bytes_);
+    return *this;
+  }
+  last_bits_ = bits;
+  last_at_ = text_.size();
   append_json_number(text_, value);
+  last_bytes_ = text_.size() - last_at_;
   return *this;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <stop_token>
 #include <string>
@@ -29,7 +30,10 @@ class LongText {
   LongText& number(double value);
   LongText& json(const Json& value);
 
-  [[nodiscard]] std::string take() { return std::move(text_); }
+  [[nodiscard]] std::string take() {
+    last_bytes_ = 0;
+    return std::move(text_);
+  }
 
  private:
   void make_room(std::size_t bytes);
@@ -38,6 +42,9 @@ class LongText {
   std::size_t most_bytes_;
   std::size_t next_look_ = 0;  ///< At so many bytes the stop token is asked again.
   std::stop_token stop_;
+  // The last number and its digits in the text; often the next is the same. 0 bytes: none.
+  std::uint64_t last_bits_ = 0;
+  std::size_t last_at_ = 0, last_bytes_ = 0;
 };
 
 /// A number as few digits as read back to the same double; null where it is not finite.

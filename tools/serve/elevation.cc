@@ -48,8 +48,9 @@ void add_question(ask::Parameters& rows, ElevationQuestion& question) {
       .like("10");
   ask::add_text(rows, "interpolation", "Accepted and without effect: a TIN is linear", "bilinear");
   rows.add("nodata_value", &question.nodata, "",
-           "What stands for no elevation: null, nan or a whole number")
+           "What stands for no elevation: null, nan or a number")
       .at(kService)
+      .as_json()
       .like("null");
   rows.add("format", &question.format, "", "json or geojson")
       .of({"json", "geojson"})

@@ -75,6 +75,7 @@ class ThreadRun {
   std::condition_variable changed_;
   int running_ = 0;
   std::uint64_t taken_ = 0, bytes_ = 0, most_bytes_ = 0;
+  bool schedule_threw_ = false;
   std::exception_ptr failure_;
   std::uint64_t failed_ = 0;  ///< The number of the task whose error that is.
   std::stop_callback<std::function<void()>> on_stop_;
@@ -114,7 +115,8 @@ void ThreadRun::give_back(std::unique_lock<std::mutex>& lock, std::uint64_t byte
   }
 }
 
-/// Runs a task, and reports to the schedule what came of it, unless the work is over by then.
+/// Runs a task, and reports to the schedule what came of it: after the error of another task too, for a
+/// build that goes on; but neither after a stop nor to a schedule that threw, which may be half changed.
 void ThreadRun::run_one(const Task& task, std::unique_lock<std::mutex>& lock) {
   std::optional<DamagedInput> damage;
   TaskResult result;
@@ -126,14 +128,16 @@ void ThreadRun::run_one(const Task& task, std::unique_lock<std::mutex>& lock) {
       damage.emplace(e);
     }
   }
-  if (is_over()) {
+  if (stop_.stop_requested() || schedule_threw_) {
     return;
   }
+  schedule_threw_ = true;
   if (damage) {
     schedule_.failed(task.name, *damage);
   } else {
     schedule_.done(task.name, result);
   }
+  schedule_threw_ = false;
 }
 
 /// Keeps the exception that is being handled, unless one of an earlier task is known, or it may come
@@ -179,6 +183,7 @@ void ThreadRun::work(AtWork& mine) noexcept {
       changed_.notify_all();
     }
   } catch (...) {  // thrown by the schedule or give_back, behind all that was handed out
+    schedule_threw_ = true;
     fail(taken_ + 1);
     changed_.notify_all();
   }

@@ -43,7 +43,8 @@ class TaskDriver {
   /// How many processes do the tasks of reading at once.
   [[nodiscard]] virtual std::size_t processes_that_read() const noexcept { return 1; }
   /// After an error nothing more begins. Tasks that were begun later than the one that met it are
-  /// stopped, and those that were begun before it go on to their end, since their errors come first.
+  /// stopped, and those that were begun before it go on to their end, since their errors come first; what
+  /// they make is told to the schedule.
   /// @param worker  Does tasks in this process.
   /// @param limits  Limits of this process.
   /// @return The most bytes that were admitted at once in this process, by estimate.

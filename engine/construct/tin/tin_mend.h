@@ -20,7 +20,7 @@ struct MeshOnDisk {
   RecordFile<std::uint64_t> places;    ///< Places of their vertices along the curve, ascending.
 };
 
-/// Flips slivers away. The triangles around them are taken into memory as a
+/// Flips slivers away (tin/sliver_flips.h). The triangles around them are taken into memory as a
 /// patch, which grows until no flip leaves it, and which then replaces its former triangles on
 /// disk. Vertices that lose all their triangles go.
 /// @param slivers  Triangles of `mesh` that snapping spoiled.

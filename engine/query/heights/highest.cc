@@ -171,11 +171,10 @@ class HighestSearch final : private BestStarVisitor {
       const GridPoint p = t.corner[i].position;
       corners[i] = {static_cast<double>(p.x), static_cast<double>(p.y), value_of(t.corner[i])};
     }
+    if (!std::isfinite(corners[0][2] + corners[1][2] + corners[2][2])) return;  // a damaged file
     const auto is_before = [](const ValuedPlace& a, const ValuedPlace& b) {
       return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
     };
-    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), is_before),
-                corners.end());
     std::vector<ValuedPlace> shared;
     border_->visit_shared(corners, shared);
     for (const ValuedPlace& c : shared) {
@@ -203,12 +202,14 @@ class HighestSearch final : private BestStarVisitor {
     result.at_vertex = !(on_border_[2] > most);
     result.point = result.at_vertex ? result.vertices.front()
                                     : at(on_border_[0], on_border_[1], on_border_[2]);
-    // The deviation, widened by the rounding of the height and of the sum.
+    // The deviation, widened by the rounding of the height and of the sum. Stored heights need no
+    // rounding, and the full TIN's answer is the exact one.
     const double deviation = result.certified_deviation;
     const double rounding =
         16 * std::numeric_limits<double>::epsilon() *
         (std::abs(result.point.height) + std::abs(facts_.heights.offset) + deviation);
-    const double reach = deviation == 0 ? 0.0 : deviation + rounding;
+    const bool is_stored = on_border_[2] < most;
+    const double reach = deviation == 0 && (result.exact || is_stored) ? 0.0 : deviation + rounding;
     result.height_min = result.point.height - reach;
     result.height_max = result.point.height + reach;
   }

@@ -54,7 +54,7 @@ struct HighestResult {
 };
 
 /// Finds the highest point and the highest vertices. Heights at vertices are as stored; on the
-/// border of the region they are interpolated, with the rounding of a few operations. A vertex on the
+/// border of the region they are interpolated, exactly but for three roundings. A vertex on the
 /// border of the region, as GridRegion has it, lies in it.
 /// @throws Error invalid_argument    the region has no inside; no vertex is asked for; as GridRegion
 ///                                   and Detail

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <variant>
 
+#include <boost/multiprecision/cpp_int.hpp>
+
 #include "engine/geometry/affine_rounding.h"
 #include "engine/query/shape/clip.h"
 
@@ -42,37 +44,39 @@ std::vector<std::vector<MapPoint>> rings_on_grid(const Region& region, const Aff
 
 MapPoint position_of(const ValuedPlace& c) { return {c[0], c[1]}; }
 
-/// A place of the triangle with its value.
+using Rational = boost::multiprecision::cpp_rational;
+
+Rational exact_cross(MapPoint o, MapPoint a, MapPoint b) {
+  const Rational x = o.x, y = o.y;
+  return (a.x - x) * (b.y - y) - (a.y - y) * (b.x - x);
+}
+
+/// A place of the triangle with its value, which is exact but for one rounding.
 ValuedPlace valued(const std::array<ValuedPlace, 3>& triangle, MapPoint p) {
   const MapPoint o = position_of(triangle[0]), b = position_of(triangle[1]),
                  c = position_of(triangle[2]);
-  const double whole = cross(o, b, c);
-  const double of_b = cross(o, p, c) / whole, of_c = cross(o, b, p) / whole;
   const auto [low, high] = std::minmax({triangle[0][2], triangle[1][2], triangle[2][2]});
-  const double value = triangle[0][2] + (of_b * (triangle[1][2] - triangle[0][2]) +
-                                         of_c * (triangle[2][2] - triangle[0][2]));
-  return {p.x, p.y, std::clamp(value, low, high)};
+  const Rational whole = exact_cross(o, b, c), value = triangle[0][2];
+  if (whole == 0) return {p.x, p.y, low};  // in a damaged file
+  const Rational rise = exact_cross(o, p, c) * (triangle[1][2] - value) +
+                        exact_cross(o, b, p) * (triangle[2][2] - value);
+  return {p.x, p.y, std::clamp(static_cast<double>(value + rise / whole), low, high)};
 }
 
-/// Where an edge crosses a side. From the edge's ends in an order of their own, so that both triangles
-/// at the edge give the same; on a side along an axis it has that side's coordinate, and an end of the
-/// edge that lies there is met as it is. So a side along a row of vertices gives these vertices.
+/// Where an edge crosses a side, exact but for one rounding: the same in both triangles at the edge, and
+/// an end of the edge that lies on the side is met as it is.
 ValuedPlace crossing(const ValuedPlace& a, const ValuedPlace& b, const PolygonSides::Side& s) {
+  const Rational from = exact_cross(s.low, s.high, position_of(a));
+  const Rational across = from - exact_cross(s.low, s.high, position_of(b));
+  Rational share = 0;
+  if (across != 0) share = from / across;
+  if (share <= 0) return a;  // a side that is as near as rounding may pass the edge's ends
+  if (share >= 1) return b;
   ValuedPlace place{};
-  if (s.low.x == s.high.x || s.low.y == s.high.y) {
-    const std::size_t axis = s.low.x == s.high.x ? 0 : 1;
-    const double at = axis == 0 ? s.low.x : s.low.y;
-    for (std::size_t k = 0; k < 3; ++k) place[k] = meet(a[axis], a[k], b[axis], b[k], at);
-    place[axis] = at;
-  } else {
-    const auto& [first, last] = std::minmax(a, b);
-    const double from = cross(s.low, s.high, position_of(first));
-    const double to = cross(s.low, s.high, position_of(last));
-    const double share = from == to ? 0.0 : std::clamp(from / (from - to), 0.0, 1.0);
-    for (std::size_t k = 0; k < 3; ++k) place[k] = first[k] + share * (last[k] - first[k]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Rational begin = a[k];
+    place[k] = static_cast<double>(begin + share * (b[k] - begin));
   }
-  const auto [low, high] = std::minmax(a[2], b[2]);
-  place[2] = std::clamp(place[2], low, high);  // rounding must not raise it above both ends
   return place;
 }
 
@@ -103,7 +107,7 @@ void RegionBorder::add_shared(const std::array<ValuedPlace, 3>& triangle,
                               const PolygonSides::Side& side,
                               std::vector<ValuedPlace>& ends) const {
   // Shares of the side, from its low end, and the edges at which they end; 3: the side's own end.
-  double from = 0.0, to = 1.0;
+  Rational from = 0, to = 1;
   std::size_t from_edge = 3, to_edge = 3;
   for (std::size_t i = 0; i < 3; ++i) {
     const MapPoint o = position_of(triangle[i]), d = position_of(triangle[(i + 1) % 3]);
@@ -111,11 +115,14 @@ void RegionBorder::add_shared(const std::array<ValuedPlace, 3>& triangle,
     const double low = cross(o, d, side.low), high = cross(o, d, side.high);
     if (low < -slack && high < -slack) return;
     if (low >= -slack && high >= -slack) continue;
-    const double share = low / (low - high);
-    if (low < high && share > from) {
+    const Rational begin = exact_cross(o, d, side.low);
+    const Rational across = begin - exact_cross(o, d, side.high);
+    if (across == 0) continue;
+    const Rational share = begin / across;
+    if (across < 0 && share > from) {
       from = share;
       from_edge = i;
-    } else if (low > high && share < to) {
+    } else if (across > 0 && share < to) {
       to = share;
       to_edge = i;
     }
@@ -123,7 +130,7 @@ void RegionBorder::add_shared(const std::array<ValuedPlace, 3>& triangle,
   if (from > to) {
     // A side that passes a corner within rounding.
     const double length = std::hypot(side.high.x - side.low.x, side.high.y - side.low.y);
-    if ((from - to) * length > sides_.slack()) return;
+    if (static_cast<double>(from - to) * length > sides_.slack()) return;
   }
   const auto end = [&](std::size_t edge, MapPoint own) {
     return edge == 3 ? valued(triangle, own)

@@ -27,10 +27,10 @@ class RegionBorder {
   RegionBorder(const Region& region, const AffineMap& map, const GridBox& bounds);
 
   /// Appends the ends of what each side shares with a closed triangle, with their values; what is as
-  /// near to the triangle as rounding is shared. Where an end lies on an edge its value lies between
-  /// those of the edge's ends, the same in both triangles at the edge.
-  /// @param triangle  Counter-clockwise.
-  /// Cost: the sides near the triangle.
+  /// near to the triangle as rounding is shared. Values are exact but for one rounding, so those of
+  /// ends on an edge are the same in both triangles at the edge.
+  /// @param triangle  Counter-clockwise, of finite values.
+  /// Cost: the sides near the triangle, and some rational numbers for each that meets it.
   void visit_shared(const std::array<ValuedPlace, 3>& triangle,
                     std::vector<ValuedPlace>& ends) const;
 

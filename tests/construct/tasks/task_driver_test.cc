@@ -144,6 +144,36 @@ TEST(TaskDriver, ThrowsTheErrorOfTheFirstTaskThatFails) {
   }
 }
 
+TEST(TaskDriver, KeepsWhatEarlierTasksMakeAfterAnError) {
+  std::atomic<bool> third_has_begun = false, third_is_stopped = false;
+  const auto wait_for = [](const std::atomic<bool>& event) {
+    while (!event) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  };
+  ToldWorker worker([&](const Task& task) -> std::string {
+    switch (number_of(task.name)) {
+      case 0:
+        wait_for(third_is_stopped);  // so the error of the second is known
+        return "made";
+      case 1:
+        wait_for(third_has_begun);
+        throw Error(ErrorCode::io_error, "the second");
+      default:
+        third_has_begun = true;
+        while (!task.stop.stop_requested()) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        third_is_stopped = true;
+        throw Error(ErrorCode::cancelled, "the third");
+    }
+  });
+  TaskList tasks(TaskKind::kRead, {1, 1, 1}, 0);
+  EXPECT_THROW(on_threads(3)(tasks, worker), Error);
+  ASSERT_EQ(tasks.results().size(), 1U);
+  EXPECT_TRUE(tasks.results().begin()->second.told.starts_with("made"));
+}
+
 TEST(TaskDriver, StopsWhenAsked) {
   std::stop_source stop;
   ToldWorker worker([&](const Task& task) -> std::string {

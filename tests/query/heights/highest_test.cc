@@ -8,7 +8,9 @@
 #include <cmath>
 #include <random>
 #include <span>
+#include <utility>
 
+#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -193,8 +195,51 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
         sign * brute_force(full, facts, std::get<Window>(*request.region), sign).most;
     EXPECT_LE(got.height_min, truth);
     EXPECT_GE(got.height_max, truth);
-    EXPECT_EQ(got.height_max - got.height_min > 0, got.certified_deviation > 0);
+    EXPECT_EQ(got.height_max - got.height_min > 0,
+              got.certified_deviation > 0 || !(got.exact || got.at_vertex));
   }
+}
+
+// A plane is highest at a corner of the window, and any level of it is the plane: nothing but rounding
+// parts the answer from the truth.
+TEST(Highest, OnABorderLiesWithinTheIntervalWhereOnlyRoundingPartsItFromTheTruth) {
+  using Rational = boost::multiprecision::cpp_rational;
+  std::mt19937_64 random(7);
+  Tin plane = reference::random_grid(random, 12, 12, 97, 0.0);
+  for (VertexId v = 0; v < plane.vertices.size(); ++v) {
+    const GridPoint p = plane.position(v);
+    plane.vertices[v].height = HeightBits(std::int32_t(7 * p.x - 3 * p.y));
+  }
+  const Hierarchy h = reference::simplify(std::move(plane), random);
+  const TemporaryStore file(h);
+  const Terrain terrain(file.open());
+  HighestRequest request;
+  request.detail.vertices = h.t0.vertices.size();
+  const auto share = [&] { return double(random() % 1000003) / 1e6; };
+  int rounded = 0;
+  for (int i = 0; i < 100; ++i) {
+    const GridBox& b = h.facts.bounds;
+    const MapPoint low =
+        h.facts.map.to_map(b.min_x + 1 + 400 * share(), b.min_y + 1 + 400 * share());
+    request.region = Window{low.x, low.y, low.x + 60 * share(), low.y + 60 * share()};
+    request.lowest = i % 2 == 0;
+    const HighestResult got = highest(terrain, request);
+    ASSERT_EQ(got.certified_deviation, 0.0);
+    ASSERT_FALSE(got.exact);
+    const Window& w = std::get<Window>(*request.region);
+    // The map's steps are 1/2, so the window has these positions on the grid.
+    const auto code_at = [&](double x, double y) -> Rational {
+      return 7 * (Rational(x) - h.facts.map.origin_x) / h.facts.map.step_x -
+             3 * (Rational(y) - h.facts.map.origin_y) / h.facts.map.step_y;
+    };
+    const Rational code = request.lowest ? code_at(w.min_x, w.max_y) : code_at(w.max_x, w.min_y);
+    const Rational truth = Rational(h.facts.heights.offset) + h.facts.heights.step * code;
+    EXPECT_LE(Rational(got.height_min), truth) << i;
+    EXPECT_GE(Rational(got.height_max), truth) << i;
+    EXPECT_LT(got.height_max - got.height_min, 1e-9);
+    rounded += got.point.height != truth ? 1 : 0;
+  }
+  EXPECT_GT(rounded, 10);
 }
 
 /// A grid in which single samples, cut off from all others by voids, are the highest.
