@@ -10,7 +10,6 @@
 #include <span>
 #include <utility>
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -18,6 +17,7 @@
 #include "engine/query/heights/locate.h"
 #include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
+#include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
 #include "tests/support/least_memory.h"
 #include "tests/support/share_of_cases.h"
@@ -26,6 +26,7 @@ namespace ptin {
 namespace {
 
 using reference::Hierarchy;
+using reference::Rational;
 using reference::TemporaryStore;
 
 struct Brute {
@@ -203,7 +204,6 @@ TEST(Highest, LiesWithinTheIntervalThatALevelOfDetailCertifies) {
 // A plane is highest at a corner of the window, and any level of it is the plane: nothing but rounding
 // parts the answer from the truth.
 TEST(Highest, OnABorderLiesWithinTheIntervalWhereOnlyRoundingPartsItFromTheTruth) {
-  using Rational = boost::multiprecision::cpp_rational;
   std::mt19937_64 random(7);
   Tin plane = reference::random_grid(random, 12, 12, 97, 0.0);
   for (VertexId v = 0; v < plane.vertices.size(); ++v) {
