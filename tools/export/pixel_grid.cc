@@ -11,7 +11,7 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::int64_t kMostPixels = INT32_MAX;
+constexpr std::int64_t kMostOnASide = INT32_MAX;
 
 /// Whole numbers in [low, high], as the first and how many there are; that may be 0.
 std::array<std::int64_t, 2> whole_numbers_in(double low, double high) {
@@ -21,7 +21,7 @@ std::array<std::int64_t, 2> whole_numbers_in(double low, double high) {
   const double first = std::ceil(low - slack);
   const double last = std::floor(high + slack);
   if (!(last >= first)) return {0, 0};
-  if (last - first >= static_cast<double>(kMostPixels) || std::abs(first) > 0x1p53) {
+  if (last - first >= static_cast<double>(kMostOnASide) || std::abs(first) > 0x1p53) {
     throw Error(ErrorCode::invalid_argument,
                 "the raster would have more than 2^31 columns or rows; give a larger --pixel-size");
   }

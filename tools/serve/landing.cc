@@ -7,6 +7,7 @@
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
+#include "tools/serve/places.h"
 #include "tools/serve/questions.h"
 
 namespace ptin::serve {
@@ -19,8 +20,6 @@ constexpr std::array kStandards = {
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/core",
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/covjson",
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/geojson"};
-
-constexpr const char* kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 
 /// What OGC EDR calls a data query; what else there is stands among the links.
 constexpr std::array kDataQueries = {"position", "trajectory", "area"};
@@ -56,7 +55,7 @@ Json collection_json(const Collection& c) {
                       "progressive transmission")}}};
   const Window w = c.lon_lat.value_or(c.bounds);
   json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
-                               {"crs", c.lon_lat ? kCrs84 : crs}};
+                               {"crs", c.lon_lat ? kCrs84 : std::string_view(crs)}};
   json["crs"] = Json::array();
   if (c.lon_lat) json["crs"].push_back(kCrs84);
   if (!crs.empty()) json["crs"].push_back(crs);

@@ -19,7 +19,6 @@ namespace ptin::serve {
 
 namespace {
 
-constexpr std::string_view kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
 constexpr std::string_view kEpsg = "http://www.opengis.net/def/crs/EPSG/0/";
 constexpr std::string_view kEpsgUrn = "urn:ogc:def:crs:EPSG::";
 /// Steps along a side of a window: a straight side may be bent in the other CRS.

@@ -16,6 +16,9 @@
 
 namespace ptin::serve {
 
+/// Longitudes and latitudes, in this order, of WGS 84.
+inline constexpr std::string_view kCrs84 = "http://www.opengis.net/def/crs/OGC/1.3/CRS84";
+
 /// Takes positions from the CRS that a client asked in to that of a terrain, and back. Axes stand
 /// as x (east, longitude), y (north, latitude), whatever the CRS says. Threads: one.
 class Places {

@@ -188,18 +188,18 @@ void Noding::refuse_memory() const {
 
 /// Notes that two edges that cross divide each other, in a vertex that is new or there already.
 void Noding::cross(std::uint32_t one, std::uint32_t other) {
-  __extension__ using Int128 = __int128;
+  __extension__ using Wide = __int128;
   const LineEdge e = graph_.edges[one], f = graph_.edges[other];
   const GridPoint a = at(e.a), b = at(e.b), c = at(f.a), d = at(f.b);
   const std::int64_t from_a = orient(c, d, a), from_b = orient(c, d, b);
   if ((orient(a, b, c) > 0) == (orient(a, b, d) > 0) || (from_a > 0) == (from_b > 0)) {
     return;
   }
-  const Int128 whole = from_a < 0 ? -(Int128{from_a} - from_b) : Int128{from_a} - from_b;
-  const Int128 part = from_a < 0 ? -Int128{from_a} : Int128{from_a};
+  const Wide whole = from_a < 0 ? -(Wide{from_a} - from_b) : Wide{from_a} - from_b;
+  const Wide part = from_a < 0 ? -Wide{from_a} : Wide{from_a};
   const auto along = [&](std::int64_t from, std::int64_t to) {  // to the nearest, halves upwards
-    const Int128 twice = 2 * part * (to - from) + whole;
-    const Int128 rounded =
+    const Wide twice = 2 * part * (to - from) + whole;
+    const Wide rounded =
         twice >= 0 ? twice / (2 * whole) : -((2 * whole - 1 - twice) / (2 * whole));
     return static_cast<std::int32_t>(from + static_cast<std::int64_t>(rounded));
   };

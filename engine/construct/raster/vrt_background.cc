@@ -12,7 +12,7 @@ namespace ptin {
 namespace {
 
 /// VRTs in VRTs are looked through to this depth: one may name itself.
-constexpr int kDeepest = 8;
+constexpr int kDeepestSource = 8;
 
 constexpr const char* kNan = "nan";
 
@@ -130,7 +130,7 @@ bool add_alpha(CPLXMLNode* root) {
 /// The XML of a VRT with the background in its bands; "" where it has none.
 std::string with_background(GDALDataset& data, const std::string& background, int depth) {
   char** const xml = data.GetMetadata("xml:VRT");
-  if (depth > kDeepest || xml == nullptr || xml[0] == nullptr) {
+  if (depth > kDeepestSource || xml == nullptr || xml[0] == nullptr) {
     return {};
   }
   const CPLXMLTreeCloser parsed(CPLParseXMLString(xml[0]));

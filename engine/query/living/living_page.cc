@@ -47,7 +47,7 @@ struct Corner {
 };
 
 /// A star with what its corners are held against.
-struct Star {
+struct PageStar {
   LivingStar star;
   std::uint32_t error;     ///< Short bits.
   bool is_closed;          ///< As has_closed_ring().
@@ -113,18 +113,18 @@ class LivingPage {
                                           Shapes& shapes) const noexcept;
   [[nodiscard]] bool lives(std::uint32_t death, std::uint32_t error) const noexcept;
   [[nodiscard]] bool is_tie(std::uint32_t death, std::uint32_t error) const noexcept;
-  [[nodiscard]] bool read_star(const PageRun& run, std::uint32_t k, Star& out) const noexcept;
-  [[nodiscard]] bool take_star(const Shapes& shapes, const Star& star, std::uint32_t k,
+  [[nodiscard]] bool read_star(const PageRun& run, std::uint32_t k, PageStar& out) const noexcept;
+  [[nodiscard]] bool take_star(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                                LivingStars& out) const;
-  [[nodiscard]] bool is_plain(const Shapes& shapes, const Star& star,
+  [[nodiscard]] bool is_plain(const Shapes& shapes, const PageStar& star,
                               std::uint32_t k) const noexcept;
-  [[nodiscard]] bool take_plain(const Shapes& shapes, const Star& star, std::uint32_t k,
+  [[nodiscard]] bool take_plain(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                                 LivingStars& out) const;
-  [[nodiscard]] bool take_any(const Shapes& shapes, const Star& star, std::uint32_t k,
+  [[nodiscard]] bool take_any(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                               LivingStars& out) const;
-  [[nodiscard]] bool has_step(const Star& star, std::size_t begin,
+  [[nodiscard]] bool has_step(const PageStar& star, std::size_t begin,
                               const LivingStars& out) const noexcept;
-  [[nodiscard]] bool add(const Star& star, std::size_t begin, LivingStars& out) const;
+  [[nodiscard]] bool add(const PageStar& star, std::size_t begin, LivingStars& out) const;
 
   const RecordPage& page_;
   const layout::NodeEntry& descriptor_;
@@ -159,7 +159,7 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
                              PageColumn::kBelow, PageColumn::kAbove,    PageColumn::kError,
                              PageColumn::kFlags, PageColumn::kDeviation};
   Shapes shapes;  // NOLINT: written before read
-  Star star;
+  PageStar star;
   for (PageRun run(page_); run.next();) {
     std::uint64_t left = chosen_stars(page_, filter_, is_within_, run);
     if (left == 0) {
@@ -278,7 +278,7 @@ std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
 }
 
 /// A star without its corners. False when it cannot be one.
-bool LivingPage::read_star(const PageRun& run, std::uint32_t k, Star& out) const noexcept {
+bool LivingPage::read_star(const PageRun& run, std::uint32_t k, PageStar& out) const noexcept {
   const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
   const layout::NodeEntry& d = descriptor_;
   const std::int64_t x = at(PageColumn::kX);
@@ -321,7 +321,7 @@ bool LivingPage::read_star(const PageRun& run, std::uint32_t k, Star& out) const
   return true;
 }
 
-bool LivingPage::take_star(const Shapes& shapes, const Star& star, std::uint32_t k,
+bool LivingPage::take_star(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                            LivingStars& out) const {
   const std::size_t begin = out.corners.size();
   return (is_plain(shapes, star, k) ? take_plain(shapes, star, k, out)
@@ -331,14 +331,15 @@ bool LivingPage::take_star(const Shapes& shapes, const Star& star, std::uint32_t
 
 /// Whether a star is as nearly all are: nothing is void around it, a load gets a corner, and where no
 /// triangle is tied.
-bool LivingPage::is_plain(const Shapes& shapes, const Star& star, std::uint32_t k) const noexcept {
+bool LivingPage::is_plain(const Shapes& shapes, const PageStar& star,
+                          std::uint32_t k) const noexcept {
   // A degree of 64 is one too many: take_plain() marks the corner behind the last one by a bit too.
   return !filter_.with_ties && shapes.degree[k] < 64 && shapes.corner_bits(k) <= kMostFieldBits &&
          shapes.common_bits == 0 && star.is_closed && star.star.has_height;
 }
 
 /// Appends the corners of what lives of such a star. False when one cannot be what was written.
-bool LivingPage::take_plain(const Shapes& shapes, const Star& star, std::uint32_t k,
+bool LivingPage::take_plain(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                             LivingStars& out) const {
   const layout::NodeEntry& d = descriptor_;
   const std::uint64_t step = shapes.corner_bits(k);
@@ -382,7 +383,7 @@ bool LivingPage::take_plain(const Shapes& shapes, const Star& star, std::uint32_
 }
 
 /// As take_plain(), for any star.
-bool LivingPage::take_any(const Shapes& shapes, const Star& star, std::uint32_t k,
+bool LivingPage::take_any(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                           LivingStars& out) const {
   const layout::NodeEntry& d = descriptor_;
   const auto degree = static_cast<std::uint32_t>(shapes.degree[k]);
@@ -427,7 +428,7 @@ std::int64_t turn(GridPoint u, GridPoint a, GridPoint b) noexcept {
 }
 
 /// Whether a step lies within the heights of a star whose corners were appended from `begin` on.
-bool LivingPage::has_step(const Star& star, std::size_t begin,
+bool LivingPage::has_step(const PageStar& star, std::size_t begin,
                           const LivingStars& out) const noexcept {
   if (!star.star.has_height) {
     return false;
@@ -447,7 +448,7 @@ bool LivingPage::has_step(const Star& star, std::size_t begin,
 
 /// Appends a star whose corners were appended from `begin` on, unless it is not asked for by its
 /// heights, or none of its triangles meets the filter's box. False when a triangle cannot be what was written.
-bool LivingPage::add(const Star& star, std::size_t begin, LivingStars& out) const {
+bool LivingPage::add(const PageStar& star, std::size_t begin, LivingStars& out) const {
   if (!filter_.steps.empty() && !star.star.is_tied && !has_step(star, begin, out)) {
     out.corners.grow(begin);
     return true;
