@@ -72,20 +72,13 @@ layout::NodeEntry IndexNodes::descend_to(PageId page) const {
 
 void IndexNodes::add_ranges(std::uint32_t level, std::span<const std::uint64_t> numbers,
                             RangesToCome& ranges) const noexcept {
-  RangeJoiner range(layout::kNodeBytes, file_.is_far());
-  const auto send = [&] {
-    if (range.size() > 0) {
-      ranges.add({offset_of(range.begin()), range.size() * layout::kNodeBytes});
-    }
-  };
+  RangeJoiner joiner(place_.offset, layout::kNodeBytes, ranges);
   for (const std::uint64_t number : numbers) {
     const std::uint64_t position = place_.shape.position(level, number);
-    if (!is_known(position) && !range.join(position)) {
-      send();
-      range.restart(position);
+    if (!is_known(position)) {
+      joiner.add(position);
     }
   }
-  send();
 }
 
 MappedIndexNodes::MappedIndexNodes(const ReadableFile& file, const MappedFile& mapping,

@@ -17,8 +17,8 @@ namespace ptin {
 /// counts, and not the one who writes all.
 struct PackedSegment {
   std::vector<std::byte> pages;
-  std::vector<layout::NodeEntry> descriptors;  ///< Of each page.
-  std::vector<ErrorBin> errors;                ///< Of the records, as ErrorTable::bins().
+  std::vector<layout::NodeEntry> descriptors;  ///< One for each page.
+  std::vector<ErrorBin> errors;  ///< The errors of the records, as ErrorTable::bins().
   std::uint16_t max_rank = 0;
 };
 

@@ -44,7 +44,6 @@ enum PageFlag : std::uint8_t {
   kPageVertexVoid = 4,  ///< VertexSplit::kVertexVoid.
   kPageNoHeights = 8,   ///< The interval of heights is empty.
 };
-inline constexpr std::uint8_t kAllPageFlags = 15;
 
 /// The most bits that a short number takes in a column, or a death in a ring.
 inline constexpr std::uint8_t kMostShortWidth = 15;

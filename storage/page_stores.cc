@@ -18,24 +18,12 @@ void DescribedPageStore::announce(std::span<const PageId> ids,
 
 void DescribedPageStore::add_ranges(std::span<const PageId> ids,
                                     RangesToCome& ranges) const noexcept {
-  RangeJoiner range(slots_.page_bytes, file_.is_far());
-  const auto send = [&] {
-    if (range.size() > 0) {
-      ranges.add(
-          {slots_.offset + range.begin() * slots_.page_bytes, range.size() * slots_.page_bytes});
-    }
-  };
+  RangeJoiner joiner(slots_.offset, slots_.page_bytes, ranges);
   for (const PageId id : ids) {
-    if (index_of(id) >= slots_.pages) {
-      continue;
-    }
-    const std::uint64_t slot = slots_.slot_of(id);
-    if (!range.join(slot)) {
-      send();
-      range.restart(slot);
+    if (index_of(id) < slots_.pages) {
+      joiner.add(slots_.slot_of(id));
     }
   }
-  send();
 }
 
 void DescribedPageStore::read(PageId id, std::span<std::byte> out, IoCounters& counters) const {

@@ -24,10 +24,17 @@
 
 namespace ptin {
 
+class DescribedPageStore;
+class IndexNodes;
+class MappedFile;
 class PackedRTree;
 class PointDirectory;
+class RangedFile;
+class ReadableFile;
+class ReadOnlyFile;
 class RecordPage;
 struct DirectoryPage;
+struct StoreFront;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
 /// and each is an eighth of an octave wide. The first has upper 0 and holds records of error
@@ -68,31 +75,31 @@ class StoreFile {
                                                const RemoteCaches& caches = {});
   StoreFile(const StoreFile&) = delete;
   StoreFile& operator=(const StoreFile&) = delete;
-  virtual ~StoreFile() = default;
+  ~StoreFile();
 
-  [[nodiscard]] virtual const std::string& path() const noexcept = 0;
-  [[nodiscard]] virtual const StoreFacts& facts() const noexcept = 0;
+  [[nodiscard]] const std::string& path() const noexcept;
+  [[nodiscard]] const StoreFacts& facts() const noexcept;
   /// CRS, options, source and counts, as UTF-8 JSON.
-  [[nodiscard]] virtual std::string_view metadata_json() const noexcept = 0;
-  [[nodiscard]] virtual const CoarsestTin& t0() const noexcept = 0;
-  [[nodiscard]] virtual std::uint64_t record_count() const noexcept = 0;
-  [[nodiscard]] virtual std::uint16_t max_rank() const noexcept = 0;
-  [[nodiscard]] virtual std::span<const ErrorBin> error_bins() const noexcept = 0;
-  [[nodiscard]] virtual std::vector<SectionInfo> sections() const = 0;
-  [[nodiscard]] virtual std::uint64_t file_bytes() const noexcept = 0;
+  [[nodiscard]] std::string_view metadata_json() const noexcept;
+  [[nodiscard]] const CoarsestTin& t0() const noexcept;
+  [[nodiscard]] std::uint64_t record_count() const noexcept;
+  [[nodiscard]] std::uint16_t max_rank() const noexcept;
+  [[nodiscard]] std::span<const ErrorBin> error_bins() const noexcept;
+  [[nodiscard]] std::vector<SectionInfo> sections() const;
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept;
   /// What a file that lies elsewhere cost since its opening, which is counted, by all threads. None:
   /// the file is the system's.
-  [[nodiscard]] virtual std::optional<IoCounters> remote_cost() const noexcept = 0;
+  [[nodiscard]] std::optional<IoCounters> remote_cost() const noexcept;
   /// The checksum of the header. The header holds the checksum of the table with the checksums of
   /// all sections, and an index entry that of what it describes: so this one number stands for the
   /// content of the file.
-  [[nodiscard]] virtual std::uint64_t fingerprint() const noexcept = 0;
-  [[nodiscard]] virtual const RecordIndex& index() const noexcept = 0;  ///< The packed R-tree.
+  [[nodiscard]] std::uint64_t fingerprint() const noexcept;
+  [[nodiscard]] const RecordIndex& index() const noexcept;  ///< The packed R-tree.
   /// The same, for searches of stars (storage/packed_rtree.h).
-  [[nodiscard]] virtual const PackedRTree& star_index() const noexcept = 0;
-  [[nodiscard]] virtual const PageStore& pages() const noexcept = 0;
+  [[nodiscard]] const PackedRTree& star_index() const noexcept;
+  [[nodiscard]] const PageStore& pages() const noexcept;
   /// The directory, for points of a file that lies elsewhere; null when it does not, or has none.
-  [[nodiscard]] virtual const PointDirectory* directory() const noexcept = 0;
+  [[nodiscard]] const PointDirectory* directory() const noexcept;
 
   /// What the descriptor of a page says.
   struct PageInfo {
@@ -102,17 +109,17 @@ class StoreFile {
     StarAttributes stars;  ///< The same over their stars.
   };
   /// @throws Error corruption
-  [[nodiscard]] virtual PageInfo page_info(PageId id) const = 0;
+  [[nodiscard]] PageInfo page_info(PageId id) const;
 
   /// What looks at a page (storage/record_page.h), which is there for the call.
   using Look = std::function<void(const RecordPage&)>;
   /// Lets `look` look at a page where it lies. What it made of the page is worth nothing after an
   /// error: the file may lose bytes while they are looked at.
   /// @throws Error corruption, io_error; what `look` throws
-  virtual void look_at(PageId id, const Look& look, IoCounters& counters) const = 0;
+  void look_at(PageId id, const Look& look, IoCounters& counters) const;
   /// The same of a page that the directory named, without its descriptor: stars are held against the
   /// bounds of the terrain, the page's largest error and its least death.
-  virtual void look_at(const DirectoryPage& page, const Look& look, IoCounters& counters) const = 0;
+  void look_at(const DirectoryPage& page, const Look& look, IoCounters& counters) const;
 
   /// Decodes the records of a page, appending to `out`, each checked against the page's descriptor.
   /// On an error `out` is as before.
@@ -127,11 +134,22 @@ class StoreFile {
                               std::vector<VertexSplit>& out, IoCounters& counters) const;
 
   /// Announces pages that the directory named: each alone, since few are wanted of many.
-  virtual void announce(std::span<const DirectoryPage> pages,
-                        IoCounters& counters) const noexcept = 0;
+  void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept;
 
- protected:
-  StoreFile() = default;
+ private:
+  StoreFile(std::unique_ptr<ReadOnlyFile> file, PageAccess access);
+  explicit StoreFile(std::unique_ptr<RangedFile> file);
+  void read_by_copies();
+  void search_by_nodes();
+
+  std::unique_ptr<const StoreFront> front_;
+  std::unique_ptr<ReadableFile> file_;
+  RangedFile* far_ = nullptr;  ///< `file_`, where it lies elsewhere.
+  std::unique_ptr<MappedFile> mapping_;
+  std::unique_ptr<IndexNodes> nodes_;
+  std::unique_ptr<DescribedPageStore> pages_;
+  std::unique_ptr<PackedRTree> index_;
+  std::unique_ptr<PointDirectory> directory_;
 };
 
 }  // namespace ptin

@@ -62,13 +62,11 @@ void check_beginning(const ReadableFile& file, const FileHeader& header, std::ui
   const auto bytes_of_magic = static_cast<std::ptrdiff_t>(layout::kMagic.size());
   if (agreeing_bytes(first, layout::kMagic) == bytes_of_magic) return;
   if (agreeing_bytes(first, layout::kStreamMagic) == bytes_of_magic) {
-    throw Error(ErrorCode::invalid_argument,
-                "this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
+    refuse("this is a stream, not a store; `ptin unstream` makes a mesh of it", file.path());
   }
   if (!first.empty() && was_store(first, header))
     damaged(file.path(), "the file does not begin like a .ptin file; it is damaged");
-  throw Error(ErrorCode::invalid_argument, "this is not a .ptin file: " + beginning_of(first),
-              file.path());
+  refuse("this is not a .ptin file: " + beginning_of(first), file.path());
 }
 
 FileHeader read_header(const ReadableFile& file) {

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include <sys/stat.h>
@@ -17,16 +16,11 @@
 #include "engine/error.h"
 #include "storage/descriptor.h"
 #include "storage/directory_writer.h"
-#include "storage/error_table.h"
 #include "storage/facts.h"
 #include "storage/file/checksum.h"
-#include "storage/file/file_layer.h"
 #include "storage/file/file_questions.h"
-#include "storage/index_writer.h"
 #include "storage/layout.h"
 #include "storage/page_columns.h"
-#include "storage/page_journal.h"
-#include "storage/page_slots.h"
 #include "storage/short_float.h"
 #include "storage/store_front.h"
 
@@ -41,8 +35,7 @@ constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
 void check_target(const std::string& path, const StoreWriterOptions& options) {
   if (!std::has_single_bit(options.page_bytes) || options.page_bytes < layout::kMinPageBytes ||
       options.page_bytes > layout::kMaxPageBytes) {
-    throw Error(ErrorCode::invalid_argument, "page_bytes must be a power of two from 4096 to 65536",
-                path);
+    refuse("page_bytes must be a power of two from 4096 to 65536", path);
   }
   struct stat target {};
   if (::stat(path.c_str(), &target) != 0) {
@@ -52,11 +45,10 @@ void check_target(const std::string& path, const StoreWriterOptions& options) {
     return;
   }
   if (!S_ISREG(target.st_mode)) {
-    throw Error(ErrorCode::invalid_argument, "the output exists and is no regular file", path);
+    refuse("the output exists and is no regular file", path);
   }
   if (!options.overwrite) {
-    throw Error(ErrorCode::invalid_argument, "the file exists; remove it, or ask for overwriting",
-                path);
+    refuse("the file exists; remove it, or ask for overwriting", path);
   }
 }
 
@@ -142,66 +134,37 @@ std::vector<layout::T0Triangle> stored(const std::vector<CoarsestTin::T>& triang
   return result;
 }
 
-class StoreWriterImpl final : public StoreWriter {
- public:
-  StoreWriterImpl(const std::string& path, const StoreWriterOptions& options)
-      : path_(path),
-        options_(options),
-        files_(options.files != nullptr ? *options.files : FileLayer::system()),
-        folder_(folder_of(path)),
-        stem_(std::filesystem::path(path).filename().string()),
-        file_(options.work_folder.empty() ? ScratchFile(files_, folder_, stem_, false)
-                                          : kept_file(files_, pages_file_in(options.work_folder))) {
-    if (!options_.work_folder.empty()) {
-      const std::string journal = options_.work_folder + "/descriptors";
-      journal_.emplace(files_, journal, ScratchFile::kept_at(journal));
-    }
+ScratchFile kept_file(FileLayer& files, const std::string& path) {
+  return ScratchFile(files, path, ScratchFile::kept_at(path));
+}
+
+}  // namespace
+
+StoreWriter::StoreWriter(const std::string& path, const StoreWriterOptions& options)
+    : path_(path),
+      options_(options),
+      files_(options.files != nullptr ? *options.files : FileLayer::system()),
+      folder_(folder_of(path)),
+      stem_(std::filesystem::path(path).filename().string()),
+      file_(options.work_folder.empty() ? ScratchFile(files_, folder_, stem_, false)
+                                        : kept_file(files_, pages_file_in(options.work_folder))) {
+  if (!options_.work_folder.empty()) {
+    const std::string journal = options_.work_folder + "/descriptors";
+    journal_.emplace(files_, journal, ScratchFile::kept_at(journal));
   }
+}
 
-  void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) override;
-  [[nodiscard]] StoreCheckpoint position() const override;
-  void sync() override;
-  void add_segment(const PackedSegment& segment, const HeightEncoding& heights) override;
-  void add_placed(const PackedSegment& segment, const HeightEncoding& heights) override;
-  void publish(const StoreFacts& facts, const CoarsestTin& t0,
-               const std::string& metadata_json) override;
-
- private:
-  static ScratchFile kept_file(FileLayer& files, const std::string& path) {
-    return ScratchFile(files, path, ScratchFile::kept_at(path));
-  }
-  void start(const HeightEncoding& heights);
-  void count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank);
-  void restore_moved_pages();
-  void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
-  PageSlots move_pages_behind(std::uint64_t front_bytes);
-
-  std::string path_;
-  StoreWriterOptions options_;
-  FileLayer& files_;
-  std::string folder_, stem_;
-  ScratchFile file_;
-  std::optional<PageJournal> journal_;
-  std::optional<HeightEncoding> heights_;
-  std::optional<IndexWriter> index_;
-  ErrorTable errors_;
-  std::uint64_t written_bytes_ = 0;  // pages lie at the start of the file until publish()
-  std::uint16_t max_rank_ = 0;
-  bool published_ = false;
-};
-
-void StoreWriterImpl::start(const HeightEncoding& heights) {
+void StoreWriter::start(const HeightEncoding& heights) {
   if (!heights_) {
     heights_ = heights;
     index_.emplace(files_, folder_, stem_, heights);
   }
   if (!(*heights_ == heights)) {
-    throw Error(ErrorCode::invalid_argument,
-                "all segments of a file, and its facts, need one height encoding", path_);
+    refuse("all segments of a file, and its facts, need one height encoding", path_);
   }
 }
 
-void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEncoding& heights) {
+void StoreWriter::add_segment(const PackedSegment& segment, const HeightEncoding& heights) {
   PTIN_CHECK(!published_ &&
              segment.pages.size() == segment.descriptors.size() * options_.page_bytes);
   for (std::size_t i = 0; i < segment.descriptors.size(); ++i) {
@@ -214,7 +177,7 @@ void StoreWriterImpl::add_segment(const PackedSegment& segment, const HeightEnco
   add_placed(segment, heights);
 }
 
-void StoreWriterImpl::add_placed(const PackedSegment& segment, const HeightEncoding& heights) {
+void StoreWriter::add_placed(const PackedSegment& segment, const HeightEncoding& heights) {
   std::uint64_t records = 0;
   for (const layout::NodeEntry& entry : segment.descriptors) records += entry.records;
   PTIN_CHECK(!published_ && records == records_in(segment.errors));
@@ -229,19 +192,19 @@ void StoreWriterImpl::add_placed(const PackedSegment& segment, const HeightEncod
   written_bytes_ += segment.descriptors.size() * options_.page_bytes;
 }
 
-void StoreWriterImpl::count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank) {
+void StoreWriter::count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank) {
   max_rank_ = std::max(max_rank_, max_rank);
   for (const ErrorBin& bin : errors) {
     errors_.add(bin);
   }
 }
 
-StoreCheckpoint StoreWriterImpl::position() const {
+StoreCheckpoint StoreWriter::position() const {
   PTIN_CHECK(journal_.has_value());
   return {journal_->pages(), journal_->chain(), errors_.bins(), max_rank_};
 }
 
-void StoreWriterImpl::sync() {
+void StoreWriter::sync() {
   PTIN_CHECK(journal_.has_value() && !published_);
   file_.sync();
   journal_->sync();
@@ -249,7 +212,7 @@ void StoreWriterImpl::sync() {
 
 // Where publish() was interrupted, it has put the front of the file over the first pages. Puts
 // their copies back.
-void StoreWriterImpl::restore_moved_pages() {
+void StoreWriter::restore_moved_pages() {
   const std::optional<PublishMark> mark = journal_->find_mark();
   if (!mark) {
     return;
@@ -264,7 +227,7 @@ void StoreWriterImpl::restore_moved_pages() {
 }
 
 // Reads the next page again, and checks it.
-void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
+void StoreWriter::take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page) {
   file_.read_at(page, written_bytes_);
   if (checksum_of(page) != entry.checksum) {
     throw Error(ErrorCode::corruption,
@@ -276,7 +239,7 @@ void StoreWriterImpl::take_back(const layout::NodeEntry& entry, std::vector<std:
   written_bytes_ += page.size();
 }
 
-void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) {
+void StoreWriter::resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) {
   PTIN_CHECK(journal_.has_value() && written_bytes_ == 0);
   start(heights);
   restore_moved_pages();
@@ -299,7 +262,7 @@ void StoreWriterImpl::resume(const StoreCheckpoint& checkpoint, const HeightEnco
 
 // Makes room for the front: copies the pages that are in its way to the end. That moves no more
 // bytes than the front has. Returns where the pages lie then.
-PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
+PageSlots StoreWriter::move_pages_behind(std::uint64_t front_bytes) {
   const std::uint64_t pages_bytes = written_bytes_;
   const std::uint64_t moved = std::min(front_bytes, pages_bytes);
   file_.reserve(pages_bytes, front_bytes);
@@ -313,14 +276,14 @@ PageSlots StoreWriterImpl::move_pages_behind(std::uint64_t front_bytes) {
   return {pages, front_pages < pages ? front_pages : 0, front_bytes, options_.page_bytes};
 }
 
-void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
-                              const std::string& metadata_json) {
+void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
+                          const std::string& metadata_json) {
   PTIN_CHECK(!published_);
   if (const char* fault = fault_in(facts)) {
-    throw Error(ErrorCode::invalid_argument, fault, path_);
+    refuse(fault, path_);
   }
   if (const char* fault = fault_in(t0, facts)) {
-    throw Error(ErrorCode::invalid_argument, fault, path_);
+    refuse(fault, path_);
   }
   start(facts.heights);
   const IndexShape shape(index_->pages());
@@ -377,14 +340,12 @@ void StoreWriterImpl::publish(const StoreFacts& facts, const CoarsestTin& t0,
   file_.publish_as(path_, options_.overwrite);
 }
 
-}  // namespace
-
 std::string pages_file_in(const std::string& work_folder) { return work_folder + "/pages"; }
 
 std::unique_ptr<StoreWriter> StoreWriter::create(const std::string& path,
                                                  const StoreWriterOptions& options) {
   check_target(path, options);
-  return std::make_unique<StoreWriterImpl>(path, options);
+  return std::unique_ptr<StoreWriter>(new StoreWriter(path, options));
 }
 
 }  // namespace ptin

@@ -6,15 +6,19 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "storage/error_table.h"
+#include "storage/file/file_layer.h"
+#include "storage/index_writer.h"
 #include "storage/packed_segment.h"
+#include "storage/page_journal.h"
+#include "storage/page_slots.h"
 #include "storage/store_file.h"
 
 namespace ptin {
-
-class FileLayer;
 
 /// When there is a directory for points (storage/FORMAT.md, "Directory"), and how it is cut.
 struct DirectoryOptions {
@@ -74,7 +78,6 @@ class StoreWriter {
                                              const StoreWriterOptions& options);
   StoreWriter(const StoreWriter&) = delete;
   StoreWriter& operator=(const StoreWriter&) = delete;
-  virtual ~StoreWriter() = default;
 
   /// Goes on from a checkpoint that a writer with the same work folder, target and options made.
   /// Pages behind the checkpoint are forgotten; those before it are read again and checked. To be
@@ -82,25 +85,25 @@ class StoreWriter {
   /// REQUIRES: a work folder.
   /// @throws Error corruption (the pages are not those of the checkpoint), io_error
   /// Cost: one reading of the pages.
-  virtual void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights) = 0;
+  void resume(const StoreCheckpoint& checkpoint, const HeightEncoding& heights);
 
   /// The checkpoint behind the last segment. REQUIRES: a work folder.
-  [[nodiscard]] virtual StoreCheckpoint position() const = 0;
+  [[nodiscard]] StoreCheckpoint position() const;
   /// Makes all segments so far durable. REQUIRES: a work folder.
   /// @throws Error resource_exhausted, io_error
-  virtual void sync() = 0;
+  void sync();
 
   /// Appends one segment, packed for pages of StoreWriterOptions::page_bytes.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
   ///               heights than before), internal (pages that are not those of the descriptors)
-  virtual void add_segment(const PackedSegment& segment, const HeightEncoding& heights) = 0;
+  void add_segment(const PackedSegment& segment, const HeightEncoding& heights);
 
   /// Appends a segment whose pages somebody has put into pages_file_in() of the work folder already,
   /// behind all that were added before: another thread, or another process. `segment.pages` is not
   /// looked at.  REQUIRES: a work folder.
   /// @throws Error resource_exhausted (disk full), io_error, invalid_argument (another encoding of
   ///               heights than before)
-  virtual void add_placed(const PackedSegment& segment, const HeightEncoding& heights) = 0;
+  void add_placed(const PackedSegment& segment, const HeightEncoding& heights);
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
   /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file
@@ -110,11 +113,28 @@ class StoreWriter {
   ///                                   appeared meanwhile and `overwrite` is off
   ///               resource_exhausted  disk full
   ///               io_error            also when all is done but the folder could not be synced
-  virtual void publish(const StoreFacts& facts, const CoarsestTin& t0,
-                       const std::string& metadata_json) = 0;
+  void publish(const StoreFacts& facts, const CoarsestTin& t0, const std::string& metadata_json);
 
- protected:
-  StoreWriter() = default;
+ private:
+  StoreWriter(const std::string& path, const StoreWriterOptions& options);
+  void start(const HeightEncoding& heights);
+  void count(const std::vector<ErrorBin>& errors, std::uint16_t max_rank);
+  void restore_moved_pages();
+  void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
+  PageSlots move_pages_behind(std::uint64_t front_bytes);
+
+  std::string path_;
+  StoreWriterOptions options_;
+  FileLayer& files_;
+  std::string folder_, stem_;
+  ScratchFile file_;
+  std::optional<PageJournal> journal_;
+  std::optional<HeightEncoding> heights_;
+  std::optional<IndexWriter> index_;
+  ErrorTable errors_;
+  std::uint64_t written_bytes_ = 0;  ///< Pages lie at the start of the file until publish().
+  std::uint16_t max_rank_ = 0;
+  bool published_ = false;
 };
 
 }  // namespace ptin

@@ -23,7 +23,7 @@ namespace ptin::build_internal {
 
 namespace {
 
-/// Of the temporary files: to be raised when their bytes mean something else.
+/// The version of the temporary files: raised when their bytes mean something else.
 constexpr int kTemporaryFormat = 10;
 
 /// The key of a line of the manifest: the sorted source that an earlier line names is damaged.

@@ -22,12 +22,12 @@ class BuildObserver {
 
   /// What the build expects to need: before it begins, and over points and TINs once more when they
   /// have been sorted. A pipe has only the latter, since it cannot be counted before it is read.
-  virtual void plan(const BuildPlan& plan);
+  virtual void plan(const BuildPlan& /*plan*/) {}
   /// How far it is; often.
-  virtual void progress(const StageProgress& progress);
+  virtual void progress(const StageProgress& /*progress*/) {}
   /// To give freed memory back to the system (malloc_trim): between tiles, where what was freed and
   /// what is wanted next exceed the limit together.
-  virtual void give_back_memory();
+  virtual void give_back_memory() {}
 };
 
 }  // namespace ptin

@@ -95,16 +95,15 @@ const std::vector<BuildOption>& table() {
        .inputs = Option::kPoints,
        .is_for = "LAS"},
       {.name = "returns",
-       .help = "LAS: keep the last return of each pulse (near the ground), the first, or all\n"
-               "(default)",
+       .help =
+           "LAS: keep the last return of each pulse (near the ground), the first, or all (default)",
        .field = kReturnWords,
        .value = "WHICH",
        .inputs = Option::kPoints,
        .is_for = "LAS"},
       {.name = "duplicates",
        .help = "Points, --repair: the height of those that fall together: mean (default), min, "
-               "max, or\n"
-               "first (of the first input that has one)",
+               "max, or first (of the first input that has one)",
        .field = kMergeWords,
        .value = "RULE",
        .inputs = kPointsAndRepaired,
@@ -116,9 +115,9 @@ const std::vector<BuildOption>& table() {
        .inputs = Option::kPoints | Option::kSurfaces,
        .is_for = "points and for the surfaces of LandXML"},
       {.name = "columns",
-       .help = "Text: the names of its columns from the left; x, y, z or as a header may name\n"
-               "them, by any other name columns that are passed over (default: a header's, else "
-               "x y z)",
+       .help =
+           "Text: the names of its columns from the left; x, y, z or as a header may name them, by "
+           "any other name columns that are passed over (default: a header's, else x y z)",
        .field = &Options::columns,
        .value = "NAME",
        .inputs = Option::kPoints,
@@ -127,8 +126,7 @@ const std::vector<BuildOption>& table() {
        .fault = fault_of_columns},
       {.name = "skip-invalid",
        .help = "Text: pass over rows that are no points, and say how many there are (default: the "
-               "first\n"
-               "one is refused)",
+               "first one is refused)",
        .field = &Options::skip_invalid,
        .inputs = Option::kPoints,
        .is_for = "points as text"},
@@ -144,9 +142,8 @@ const std::vector<BuildOption>& table() {
        .inputs = Option::kTins | Option::kRepairedTins,
        .is_for = "TINs"},
       {.name = "max-edge",
-       .help = "Points, --repair: triangles with an edge longer than this become void; CRS "
-               "units, or metres\n"
-               "where those are degrees",
+       .help = "Points, --repair: triangles with an edge longer than this become void; CRS units, "
+               "or metres where those are degrees",
        .field = &Options::max_edge,
        .value = "L",
        .range = NumberRange::kPositive,
@@ -155,10 +152,9 @@ const std::vector<BuildOption>& table() {
        .inputs = kPointsAndRepaired,
        .is_for = kForPointsAndRepaired},
       {.name = "breaklines",
-       .help = "Points, --repair: lines that become edges of the TIN, from layers that OGR reads "
-               "or\n"
-               "LandXML; without heights they are laid on the surface; several files, behind "
-               "INPUT",
+       .help =
+           "Points, --repair: lines that become edges of the TIN, from layers that OGR reads or "
+           "LandXML; without heights they are laid on the surface; several files, behind INPUT",
        .field = &Options::breaklines,
        .value = "FILE",
        .inputs = kPointsAndRepaired,
@@ -172,8 +168,7 @@ const std::vector<BuildOption>& table() {
        .fault = fault_of_breakline_layer},
       {.name = "boundary",
        .help = "Points, --repair: polygons outside of which all is void, from a layer that OGR "
-               "reads or\n"
-               "LandXML; without heights they are laid on the surface",
+               "reads or LandXML; without heights they are laid on the surface",
        .field = &Options::boundary,
        .value = "FILE",
        .inputs = kPointsAndRepaired,
@@ -203,7 +198,7 @@ const std::vector<BuildOption>& table() {
        .field = &Options::vertical_crs,
        .value = "CRS"},
       {.name = "cost",
-       .help = "In which order vertices go: error (default, for levels of detail), roi (point\n"
+       .help = "In which order vertices go: error (default, for levels of detail), roi (point "
                "location) or elevation (isolines)",
        .field = kCostWords,
        .is_always_kept = true,
@@ -219,8 +214,7 @@ const std::vector<BuildOption>& table() {
        .reads = false},
       {.name = "void-slope",
        .help = "Error charged for each ground unit that the border of a void moves: at an error E "
-               "it\n"
-               "moves by E / S at most",
+               "it moves by E / S at most",
        .field = &Options::void_slope,
        .value = "S",
        .range = NumberRange::kNotNegative,
@@ -231,8 +225,7 @@ const std::vector<BuildOption>& table() {
        .reads = false},
       {.name = "tile",
        .help = "Samples along a leaf of the tile hierarchy, of points and TINs about as many "
-               "(default:\n"
-               "by the number of samples)",
+               "(default: by the number of samples)",
        .field = &Options::tile,
        .value = "SIDE",
        .is_always_kept = true,

@@ -56,7 +56,7 @@ struct BuildOption {
   const char* key = nullptr;
   /// Its names on the command line, between commas; null: "--name".
   const char* words = nullptr;
-  NumberRange range = NumberRange::kFinite;  ///< Of a number, where `unit` is not null.
+  NumberRange range = NumberRange::kFinite;  ///< The numbers it takes, where `unit` is not null.
   const char* unit = nullptr;                ///< In which numbers are, for refusals; "" for none.
   const char* noun = nullptr;                ///< A number: what it is called in a refusal.
   unsigned inputs = kAll;

@@ -18,7 +18,7 @@ struct CrsFacts {
   std::string wkt;  ///< WKT2 on one line; empty when unknown.
   /// GDAL understands the text. Else what follows is unknown, but for units that are told beside it.
   bool is_understood = false;
-  std::string name;  ///< Of the horizontal part.
+  std::string name;  ///< Name of the horizontal part.
   std::string code;  ///< "EPSG:32611" of the horizontal part; empty when it has none.
   bool has_third_axis =
       false;  ///< Heights are the CRS's own: above its ellipsoid, unless it is local.

@@ -272,8 +272,7 @@ void ScratchFile::publish_as(const std::string& target, bool replace) {
   }
   failure = files_.rename(path_, target, replace);
   if (failure == EEXIST) {
-    throw Error(ErrorCode::invalid_argument, "the file exists; remove it, or ask for overwriting",
-                target);
+    refuse("the file exists; remove it, or ask for overwriting", target);
   }
   if (failure != 0) {
     throw system_error(failure, "cannot rename the finished file onto this name", target);

@@ -12,44 +12,6 @@
 
 namespace ptin {
 
-/// Makes ranges from the slots that are wanted, which ascend. Slots that lie near each other are
-/// joined, with what lies between them: one more request to the disk costs as much as reading a
-/// gap of 32 KiB. Yet at most a third of what a run of requests reads is unwanted. The requests of a
-/// round to a far file go out together, so that one more costs little: a gap of 8 KiB.
-class RangeJoiner {
- public:
-  RangeJoiner(std::uint64_t slot_bytes, bool is_far)
-      : gap_((is_far ? kFarGapBytes : kGapBytes) / slot_bytes) {}
-
-  /// True when `slot` was joined to the current range; otherwise the range is complete, and
-  /// restart() begins the next.
-  bool join(std::uint64_t slot) {
-    ++wanted_;
-    if (begin_ == end_ || slot < end_ || slot - end_ > gap_ ||
-        (wasted_ + (slot - end_)) * kWantedPerWaste > wanted_) {
-      return false;
-    }
-    wasted_ += slot - end_;
-    end_ = slot + 1;
-    return true;
-  }
-  void restart(std::uint64_t slot) {
-    begin_ = slot;
-    end_ = slot + 1;
-  }
-  [[nodiscard]] std::uint64_t begin() const { return begin_; }
-  [[nodiscard]] std::uint64_t size() const { return end_ - begin_; }  ///< 0: there is none.
-
- private:
-  static constexpr std::uint64_t kGapBytes = std::uint64_t{32} << 10;
-  static constexpr std::uint64_t kFarGapBytes = std::uint64_t{8} << 10;
-  static constexpr std::uint64_t kWantedPerWaste = 2;
-
-  std::uint64_t gap_;
-  std::uint64_t begin_ = 0, end_ = 0;
-  std::uint64_t wanted_ = 0, wasted_ = 0;
-};
-
 /// Ranges that are announced: of a far file together, when this goes; of another one each at once,
 /// without memory. A hint: what there is no memory for is left out.
 class RangesToCome {
@@ -63,6 +25,7 @@ class RangesToCome {
     }
   }
 
+  [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
   void add(const ByteRange& range) noexcept {
     ++counters_.ranges_announced;
     if (!file_.is_far()) {
@@ -80,6 +43,52 @@ class RangesToCome {
   const ReadableFile& file_;
   IoCounters& counters_;
   std::vector<ByteRange> ranges_;
+};
+
+/// Makes ranges from the slots that are wanted, which ascend. Slots that lie near each other are
+/// joined, with what lies between them: one more request to the disk costs as much as reading a
+/// gap of 32 KiB. Yet at most a third of what a run of requests reads is unwanted. The requests of a
+/// round to a far file go out together, so that one more costs little: a gap of 8 KiB.
+class RangeJoiner {
+ public:
+  /// @param offset  Place of slot 0 in the file.
+  /// @param ranges  Borrowed; gets each range when it is complete, the last one when this goes.
+  RangeJoiner(std::uint64_t offset, std::uint64_t slot_bytes, RangesToCome& ranges)
+      : offset_(offset),
+        slot_bytes_(slot_bytes),
+        gap_((ranges.is_far() ? kFarGapBytes : kGapBytes) / slot_bytes),
+        ranges_(ranges) {}
+  RangeJoiner(const RangeJoiner&) = delete;
+  RangeJoiner& operator=(const RangeJoiner&) = delete;
+  ~RangeJoiner() { send(); }
+
+  void add(std::uint64_t slot) noexcept {
+    ++wanted_;
+    if (begin_ == end_ || slot < end_ || slot - end_ > gap_ ||
+        (wasted_ + (slot - end_)) * kWantedPerWaste > wanted_) {
+      send();
+      begin_ = slot;
+    } else {
+      wasted_ += slot - end_;
+    }
+    end_ = slot + 1;
+  }
+
+ private:
+  static constexpr std::uint64_t kGapBytes = std::uint64_t{32} << 10;
+  static constexpr std::uint64_t kFarGapBytes = std::uint64_t{8} << 10;
+  static constexpr std::uint64_t kWantedPerWaste = 2;
+
+  void send() noexcept {
+    if (begin_ != end_) {
+      ranges_.add({offset_ + begin_ * slot_bytes_, (end_ - begin_) * slot_bytes_});
+    }
+  }
+
+  std::uint64_t offset_, slot_bytes_, gap_;
+  RangesToCome& ranges_;
+  std::uint64_t begin_ = 0, end_ = 0;
+  std::uint64_t wanted_ = 0, wasted_ = 0;
 };
 
 }  // namespace ptin

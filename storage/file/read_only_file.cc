@@ -20,7 +20,7 @@ namespace {
 
 [[noreturn]] void throw_irregular(const std::string& path, const struct stat& facts) {
   const std::string kind = S_ISDIR(facts.st_mode) ? "a folder" : "no regular file";
-  throw Error(ErrorCode::invalid_argument, "this is " + kind + "; a .ptin file is expected", path);
+  refuse("this is " + kind + "; a .ptin file is expected", path);
 }
 
 // Looked at before opening, since opening a pipe would wait for its other end.

@@ -214,7 +214,9 @@ TEST_F(RefusedMemory, OfBuildsIsStatus7) {
       const Outcome outcome = ran(command, n, from_there_on);
       // What was refused may be done without, as the buffer of a stable sort; or it came behind the
       // output, as what the destructors of JSON allocate.
-      if (outcome.status != 0) EXPECT_EQ(outcome.status, 7) << outcome.err;
+      if (outcome.status != 0) {
+        EXPECT_EQ(outcome.status, 7) << outcome.err;
+      }
       if (std::filesystem::exists(output("b.ptin"))) {
         EXPECT_TRUE(read_file(output("b.ptin")) == whole);
       } else {

@@ -15,6 +15,7 @@ namespace {
 
 TEST(BuildOptionTable, IsWhatHelpHas) {
   const std::string help = testing::run_ptin({"build", "--help"}).out;
+  EXPECT_NE(help.find("--cost TEXT:{error,roi,elevation}"), std::string::npos) << help;
   for (const BuildOption& option : build_option_table()) {
     EXPECT_NE(help.find(std::string("--") + option.name), std::string::npos) << option.name;
     EXPECT_NE(help.find(option.value == nullptr ? "" : option.value), std::string::npos);

@@ -160,7 +160,8 @@ TEST(Parameter, IsToldByHelpManualCompletionAndOpenApi) {
   const auto schema = [&](std::size_t i) { return operation["parameters"][i]["schema"]; };
   EXPECT_EQ(schema(1),
             nlohmann::json::parse(R"({"type":"number","minimum":0.0,"exclusiveMinimum":true})"));
-  EXPECT_EQ(schema(2), nlohmann::json::parse(R"({"type":"integer","minimum":1.0,"maximum":9.0})"));
+  EXPECT_EQ(schema(2),
+            nlohmann::json::parse(R"({"type":"integer","minimum":1.0,"maximum":9.0,"default":3})"));
   EXPECT_EQ(schema(3), nlohmann::json::parse(R"({"type":"string","enum":["cubic","linear"]})"));
   EXPECT_EQ(schema(4), nlohmann::json::parse(R"({"type":"array","minItems":2,"maxItems":4,
                                                  "items":{"type":"number","minimum":0.0}})"));

@@ -63,6 +63,9 @@ TEST_F(Serve, DescribesItselfAsOpenApi) {
   EXPECT_TRUE(api["paths"].contains("/collections/{id}/position"));
   EXPECT_TRUE(api["paths"]["/collections/{id}/sight"]["post"]["requestBody"]["content"].contains(
       "application/x-www-form-urlencoded"));
+  // A number in hertz, or text with a unit.
+  const json& of_sight = api["paths"]["/collections/{id}/sight"]["post"]["requestBody"]["content"];
+  EXPECT_FALSE(of_sight["application/json"]["schema"]["properties"]["frequency"].contains("type"));
   EXPECT_FALSE(api["servers"].empty());
   EXPECT_EQ(api["security"], json::array());  // This service wants no token.
   EXPECT_FALSE(api["components"].contains("securitySchemes"));

@@ -42,6 +42,14 @@ TEST_F(Serve, DrawsIsolinesAsTheLibraryDoes) {
   }
 }
 
+TEST_F(Serve, HasNoLinesAtNoLevels) {
+  for (const std::string none : {"", "[]"}) {
+    const HttpAnswer answer = get(in("mountains", "isolines?level=" + none));
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    EXPECT_EQ(answer.json()["features"], json::array());
+  }
+}
+
 TEST_F(Serve, GivesMeshesAndStreamsAsTheProgramDoes) {
   const Window w = middle_of_bounds(*mountains_, 0.25);
   const std::string window = window_text(w);

@@ -29,6 +29,21 @@ TEST(Help, HasNoLineLongerThanATerminal) {
   }
 }
 
+TEST(Help, HasItsOptionsInOneIndentedList) {
+  for (const Command& command : commands()) {
+    const std::string help = run_ptin({command.name, "--help"}).out;
+    std::istringstream list(help.substr(help.find("Options:\n")));
+    std::string line;
+    std::getline(list, line);
+    bool has_last = false;
+    while (std::getline(list, line) && !line.empty()) {
+      EXPECT_TRUE(line.starts_with("  ")) << command.name << ": " << line;
+      has_last = has_last || line.find("--quiet") != std::string::npos;
+    }
+    EXPECT_TRUE(has_last) << command.name;
+  }
+}
+
 TEST(Help, IsTheSameByItsOtherNames) {
   const Outcome help = run_ptin({"help"});
   EXPECT_EQ(help.status, 0);

@@ -15,23 +15,29 @@ Json& member_of(Json& object, std::string_view name) {
   return point == std::string_view::npos ? member : member_of(member, name.substr(point + 1));
 }
 
+}  // namespace
+
 void add_csv_value(LongText& text, const Json& value) {
   if (value.is_string()) {
     const auto& field = value.get_ref<const std::string&>();
     // By RFC 4180, where it needs quotes to be read back as it is.
     const bool is_quoted = field.find_first_of(",;\"\r\n\t") != std::string::npos ||
                            field.starts_with('#') || field.starts_with(' ') || field.ends_with(' ');
+    if (!is_quoted) {
+      text.add(field);
+      return;
+    }
     std::string quoted = "\"";
     for (const char c : field) quoted.append(c == '"' ? 2 : 1, c);
-    text.add(is_quoted ? quoted + "\"" : field);
+    text.add(quoted + "\"");
   } else if (value.is_boolean()) {
     text.add(value.get<bool>() ? "1" : "0");
-  } else if (value.is_number() && std::isfinite(value.get<double>())) {
+  } else if (value.is_number_float()) {
+    if (const double number = value.get<double>(); std::isfinite(number)) text.number(number);
+  } else if (value.is_number()) {
     text.json(value);
   }
 }
-
-}  // namespace
 
 std::string Field::heading() const {
   std::string heading = name;
@@ -47,14 +53,6 @@ void put(Json& object, std::span<const Field> fields, std::vector<Json> values) 
     const bool is_begun = member.is_object() && values[i].is_object() && values[i].empty();
     if (!is_begun) member = std::move(values[i]);
   }
-}
-
-void add_csv_line(LongText& text, std::span<const Json> values) {
-  for (const Json& value : values) {
-    if (&value != values.data()) text.add(",");
-    add_csv_value(text, value);
-  }
-  text.add("\n");
 }
 
 void add_object(LongText& text, std::span<const Field> fields, std::span<const Json> values) {

@@ -182,17 +182,26 @@ class Fields : public std::vector<Field> {
   }
 };
 
-/// Adds a line of CSV: a value that is null, infinite or left out is empty.
-void add_csv_line(LongText& text, std::span<const Json> values);
+/// Adds a value as CSV has it: nothing for one that is null, infinite or left out.
+void add_csv_value(LongText& text, const Json& value);
 /// Adds a table with a heading.
 /// @param rows   How many there are.
 /// @param row_at Makes a row by its number.
 template <typename Row, typename RowAt>
 void add_csv(LongText& text, const Fields<Row>& fields, std::size_t rows, const RowAt& row_at) {
-  std::vector<Json> headings;
-  for (const Field& field : fields) headings.emplace_back(field.heading());
-  add_csv_line(text, headings);
-  for (std::size_t i = 0; i < rows; ++i) add_csv_line(text, fields.values_of(row_at(i)));
+  // One value at a time: a list of values for each of a million rows is a third of their time.
+  const auto add_line = [&](const auto& value_of) {
+    for (const Field& field : fields) {
+      if (&field != &fields.front()) text.add(",");
+      add_csv_value(text, value_of(field));
+    }
+    text.add("\n");
+  };
+  add_line([](const Field& field) { return Json(field.heading()); });
+  for (std::size_t i = 0; i < rows; ++i) {
+    const Row& row = row_at(i);
+    add_line([&row](const Field& field) { return field.value(&row); });
+  }
 }
 
 /// Adds an object of JSON, of fields whose names have no point.

@@ -68,7 +68,7 @@ void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
   rows.add("level", &levels.levels, "H...", level_help)
       .spelled("--level,--fl")
       .in(Unit::kHeight)
-      .values(1, kAnyNumberOfValues)
+      .values(0, kAnyNumberOfValues)  // A list of JSON may be empty: there are no lines then.
       .at(doors);
   rows.add("interval", &levels.interval, "D", interval_help)
       .spelled("-i,--interval")

@@ -2,7 +2,6 @@
 #include "tools/ask/parameter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <type_traits>
 
 #include "engine/crs/ground.h"
@@ -136,19 +135,29 @@ std::string help_at(const Parameter& p, Door door) {
   return p.help + " (" + unit + own + ")";
 }
 
-std::string default_of(const Parameter& p) {
-  return std::visit(
-      [](const auto& into) -> std::string {
-        using Type = std::decay_t<decltype(into)>;
-        if constexpr (std::is_same_v<Type, std::string*>) return *into;
-        if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*into);
+NumberRange range_at(const Parameter& p, Door door) noexcept {
+  if (door == Door::kProgram) return p.range;
+  NumberRange range = p.range_over_http.value_or(p.range);
+  range.least = std::max(range.least, NumberRange::kFinite.least);
+  range.most = std::min(range.most, NumberRange::kFinite.most);
+  range.has_nan = false;
+  return range;
+}
+
+Parameter& Parameter::with_default() {
+  default_value = std::visit(
+      [](const auto& place) -> std::string {
+        using Type = std::decay_t<decltype(place)>;
+        if constexpr (std::is_same_v<Type, std::string*>) return *place;
+        if constexpr (std::is_same_v<Type, double*>) return tools::exact_number(*place);
         if constexpr (std::is_integral_v<std::remove_pointer_t<Type>> &&
                       !std::is_same_v<Type, bool*>) {
-          return std::to_string(*into);
+          return std::to_string(*place);
         }
         return {};
       },
-      p.into);
+      into);
+  return *this;
 }
 
 bool is_whole(const Parameter& p) noexcept {
@@ -170,9 +179,7 @@ double Reading::number_of(const Parameter& p, const std::string& text) const {
   if (!number && has_own_unit(p, door_)) {
     if (const auto length = tools::length_of(text)) number = length->number;
   }
-  // Over HTTP no number is infinite: JSON has none.
-  const bool is_too_far = door_ == Door::kService && number && !std::isfinite(*number);
-  if (number && range_at(p, door_).holds(*number) && !is_too_far) return *number;
+  if (number && range_at(p, door_).holds(*number)) return *number;
   const std::string unit = words_of(p.unit, door_);
   if (!number && !p.source_unit.empty() && tools::length_of(text)) {
     refuse("must be a plain number, " + std::string(p.source_unit) +

@@ -34,7 +34,7 @@ enum class Door : std::uint8_t { kNone = 0, kProgram = 1, kService = 2, kBoth = 
 /// behind them, as 10ft.
 enum class Unit : std::uint8_t {
   kNone,
-  kMap,     ///< Of positions.
+  kMap,     ///< The unit of positions.
   kHeight,  ///< The height's unit; where nobody knows it, what is taken for it (unit_of_ground()).
   kGround,  ///< A distance: map units; in a geographic CRS metres.
 };
@@ -67,11 +67,11 @@ struct Parameter {
   bool repeats = false;           ///< It may be given several times, a value each time.
   bool splits_at_commas = false;  ///< On the command line several values may be one word.
   Door required = Door::kNone;    ///< Where it must be given.
-  bool shows_default = false;
+  std::string default_value{};    ///< What it is where it is not given, to be told; empty: nothing.
   Door doors = Door::kBoth;
-  bool is_json = false;        ///< Over HTTP: text of JSON, or a value of it in a body.
+  bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
-  std::string help{};          ///< Of people, without the unit.
+  std::string help{};          ///< For people, without the unit.
   std::string_view hint{};     ///< Behind a refusal: what may have been meant.
 
   // Each sets what its name says, so that a row is one statement.
@@ -89,7 +89,8 @@ struct Parameter {
   Parameter& needing(std::string_view names) { return needs = names, *this; }
   Parameter& bound(Door where) { return bound_at = where, *this; }
   Parameter& required_at(Door where) { return required = where, *this; }
-  Parameter& with_default() { return shows_default = true, *this; }
+  /// Has the value told that it has now.
+  Parameter& with_default();
   Parameter& at(Door where) { return doors = where, *this; }
   Parameter& as_json() { return is_json = true, *this; }
   Parameter& repeated() { return repeats = true, *this; }
@@ -116,13 +117,8 @@ class Parameters : public std::vector<Parameter> {
 [[nodiscard]] std::string name_at(const Parameter& parameter, Door door);
 /// The parameter's help with its unit, as the door has it.
 [[nodiscard]] std::string help_at(const Parameter& parameter, Door door);
-/// The numbers that a door takes.
-[[nodiscard]] inline const NumberRange& range_at(const Parameter& parameter, Door door) noexcept {
-  const bool is_other = door == Door::kService && parameter.range_over_http;
-  return is_other ? *parameter.range_over_http : parameter.range;
-}
-/// The value that a parameter has before it is given; empty where it has none.
-[[nodiscard]] std::string default_of(const Parameter& parameter);
+/// The numbers that a door takes: over HTTP finite ones, since JSON has no others.
+[[nodiscard]] NumberRange range_at(const Parameter& parameter, Door door) noexcept;
 /// True for a flag, which has no value on the command line.
 [[nodiscard]] inline bool is_flag(const Parameter& p) noexcept {
   return std::holds_alternative<bool*>(p.into);

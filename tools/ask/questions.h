@@ -51,7 +51,7 @@ struct ProfileRow {
   MapPoint at;                      ///< In the CRS of whoever asked.
   double deviation = 0.0;           ///< Certified.
   bool has_stations = true;         ///< Some points are stations.
-  const std::string* id = nullptr;  ///< Of its line; null: the input has none.
+  const std::string* id = nullptr;  ///< The name of its line; null: the input has none.
 };
 [[nodiscard]] Fields<ProfileRow> profile_fields();
 
@@ -70,7 +70,7 @@ void for_each_stretch(std::span<const ProfilePoint> points,
 struct ProfileAnswer {
   const ProfileResult& profile;
   const CrsFacts& crs;
-  const std::vector<std::string>* ids = nullptr;  ///< Of the lines; null: the input has none.
+  const std::vector<std::string>* ids = nullptr;  ///< Names of the lines; null: the input has none.
   /// How far a side of the client's CRS is from the line walked, map units.
   double bent_at_most = 0.0;
 };
@@ -80,7 +80,7 @@ struct ProfileAnswer {
 
 struct SightQuestion {
   SightRequest request;
-  std::optional<double> hertz;                ///< Of the link whose first Fresnel zone is measured.
+  std::optional<double> hertz;                ///< The link whose first Fresnel zone is measured.
   std::vector<double> end_heights{2.0, 2.0};  ///< Over HTTP: of the ends of `coords`.
 };
 void add_question(Parameters& rows, SightQuestion& question);
@@ -132,15 +132,15 @@ void add_question(Parameters& rows, IsolineQuestion& question);
 struct IsolineStep {
   std::uint64_t step = 0;        ///< From 0.
   std::uint64_t splits = 0;      ///< Applied to T0 by then.
-  double certified_error = 0.0;  ///< Of the TIN whose isolines these are.
+  double certified_error = 0.0;  ///< The error of the TIN whose isolines these are.
 };
 /// A line as a feature; or what lies between two levels.
 struct IsolineRow {
   std::uint64_t id = 0;
-  double elevation = 0.0;  ///< Of a band the lower level.
+  double elevation = 0.0;  ///< The level; the lower one of a band.
   bool ring = false;
   const IsolineStep* step = nullptr;  ///< Null: there are no steps.
-  double upper = 0.0;                 ///< Of a band.
+  double upper = 0.0;                 ///< The upper level of a band.
 };
 [[nodiscard]] Fields<IsolineRow> isoline_row_fields();
 [[nodiscard]] Fields<IsolineRow> band_row_fields();
@@ -172,7 +172,7 @@ struct HighestPlace {
   HeightAt at;
   std::size_t rank = 1;
   bool at_vertex = true;
-  const HighestResult* result = nullptr;  ///< Of the point; null: a further vertex.
+  const HighestResult* result = nullptr;  ///< The answer, for the point; null: a further vertex.
 };
 [[nodiscard]] Fields<HighestPlace> highest_place_fields();
 /// The point, then the other vertices; none where there is no surface.
@@ -198,7 +198,7 @@ struct VolumeRow {
 struct VolumeAnswer {
   std::vector<VolumeRow> rows;
   std::string against;                     ///< The other terrain; empty: none.
-  std::optional<AnswerFacts> other_facts;  ///< Of the other terrain.
+  std::optional<AnswerFacts> other_facts;  ///< What is certain of the other terrain.
   std::string ground_unit;
 };
 [[nodiscard]] Fields<VolumeAnswer> volume_fields();
@@ -207,7 +207,7 @@ struct VolumeAnswer {
 
 struct MeshAnswer {
   const RefinedTin* refined;
-  std::uint64_t vertices = 0, triangles = 0;  ///< Of the output.
+  std::uint64_t vertices = 0, triangles = 0;  ///< What the output has.
   const tools::LocalFrame* frame = nullptr;   ///< Null: the output has none.
 };
 [[nodiscard]] Fields<MeshAnswer> mesh_fields();

@@ -104,6 +104,7 @@ void add_question(Parameters& rows, SightQuestion& question) {
           "1 MHz at least")
       .excluding("verdict")
       .bound(Door::kProgram)
+      .as_json()
       .like("5.8e9");
   add_detail(rows, request.detail, ": finer records are left out; may answer undecided",
              "Leave out what is not among the terrain's N most important vertices, instead of an "

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 #include <string_view>
 
 #include "engine/error.h"
@@ -120,15 +121,18 @@ std::string shown(std::string_view text) {
 
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines;
-  std::size_t begin = 0;
-  while (text.size() - begin > width) {
-    std::size_t end = text.rfind(' ', begin + width);
-    if (end == std::string::npos || end <= begin) end = text.find(' ', begin + width);
-    if (end == std::string::npos) break;
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
+  std::istringstream given(text);
+  for (std::string line; std::getline(given, line);) {
+    std::size_t begin = 0;
+    while (line.size() - begin > width) {
+      std::size_t end = line.rfind(' ', begin + width);
+      if (end == std::string::npos || end <= begin) end = line.find(' ', begin + width);
+      if (end == std::string::npos) break;
+      lines.push_back(line.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    lines.push_back(line.substr(begin));
   }
-  lines.push_back(text.substr(begin));
   return lines;
 }
 

@@ -34,7 +34,7 @@ namespace ptin::tools {
 [[nodiscard]] std::string printable(std::string text);
 /// A text that somebody gave as a sentence quotes it: cut behind 64 bytes, at the end of a character.
 [[nodiscard]] std::string shown(std::string_view text);
-/// The words of a text in lines of at most `width` bytes; a longer word has a line of its own.
+/// The words of each line of a text in lines of at most `width` bytes; a longer word has one of its own.
 [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t width);
 /// A file's name as a word of a shell's command: in quotes where it holds anything but letters,
 /// digits and the signs that no shell minds.

@@ -105,8 +105,7 @@ void write_glb(const Mesh& mesh, ByteSink& out) {
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + text.size() + (binary > 0 ? 8 + binary : 0);
   if (total > UINT32_MAX) {
-    throw Error(ErrorCode::invalid_argument,
-                "GLB holds at most 4 GiB; write .ply, or ask for a window or an error");
+    refuse("GLB holds at most 4 GiB; write .ply, or ask for a window or an error");
   }
   out.write("glTF");
   out.write_value(std::uint32_t{2});

@@ -117,10 +117,10 @@ class LandXml final : public MeshStream {
 
 std::string land_xml_head(const CrsFacts& crs, const std::string& path) {
   if (crs.geographic) {
-    throw Error(ErrorCode::invalid_argument,
-                "LandXML has northing and easting in a plane, and this terrain's CRS is in "
-                "degrees; write another format, or build from a source in a projected CRS",
-                path);
+    refuse(
+        "LandXML has northing and easting in a plane, and this terrain's CRS is in degrees; write "
+        "another format, or build from a source in a projected CRS",
+        path);
   }
   // The schema wants a date and a time. They are always these, since equal input makes equal bytes.
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"

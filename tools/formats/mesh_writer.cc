@@ -35,7 +35,7 @@ const MeshFormat& mesh_format_of(const std::string& path) {
   }
   std::string what = "the name has no extension";
   if (!extension.empty()) what = std::string("unknown extension .").append(extension);
-  throw Error(ErrorCode::invalid_argument, what.append("; known are ").append(known), path);
+  refuse(what.append("; known are ").append(known), path);
 }
 
 void write_in_pieces(const Mesh& mesh, MeshStream& stream) {

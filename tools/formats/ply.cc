@@ -28,8 +28,7 @@ std::string header_of(const Mesh& mesh) {
 
 void write_ply(const Mesh& mesh, ByteSink& out) {
   if (mesh.vertices.size() > INT32_MAX) {
-    throw Error(ErrorCode::invalid_argument,
-                "PLY holds at most 2^31 - 1 vertices; ask for a window or an error");
+    refuse("PLY holds at most 2^31 - 1 vertices; ask for a window or an error");
   }
   out.write(header_of(mesh));
   for (const auto& vertex : mesh.vertices) out.write_value(vertex);

@@ -116,8 +116,7 @@ std::unique_ptr<MeshStream> make_solid(std::unique_ptr<MeshStream> inner, double
 
 Mesh solid_of(const Mesh& surface, double base) {
   if (surface.vertices.size() > UINT32_MAX / 2) {
-    throw Error(ErrorCode::invalid_argument,
-                "a solid has twice the vertices, more than 2^32; ask for a window or an error");
+    refuse("a solid has twice the vertices, more than 2^32; ask for a window or an error");
   }
   Mesh solid;
   solid.crs = surface.crs;

@@ -43,8 +43,7 @@ class Stl final : public MeshStream {
 
   void add_triangle(const std::array<Corner, 3>& corners) override {
     if (triangles_ == UINT32_MAX) {
-      throw Error(ErrorCode::invalid_argument,
-                  "STL counts at most 2^32 - 1 triangles; ask for a window or a tolerance");
+      refuse("STL counts at most 2^32 - 1 triangles; ask for a window or a tolerance");
     }
     ++triangles_;
     std::array<Point, 3> p{};

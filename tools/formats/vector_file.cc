@@ -145,8 +145,7 @@ void refuse_extension(const std::string& path, const std::string& known) {
   const std::string extension = lower_extension(path);
   const std::string what = extension.empty() ? std::string("the name has no extension")
                                              : std::string("unknown extension ").append(extension);
-  throw Error(ErrorCode::invalid_argument,
-              what + "; known are " + known + ", and - for GeoJSON on stdout", path);
+  refuse(what + "; known are " + known + ", and - for GeoJSON on stdout", path);
 }
 
 const VectorFormat& vector_format_of(const std::string& path) {
@@ -165,8 +164,7 @@ VectorFile::VectorFile(std::string path, bool overwrite, const Layer& layer)
     check_output(path_, overwrite_);
     target_ = output_target(path_);
     if (target_ != path_ && lower_extension(path_) == ".shp") {
-      throw Error(ErrorCode::invalid_argument,
-                  "is a link, and a shapefile is several files; give the name it leads to", path_);
+      refuse("is a link, and a shapefile is several files; give the name it leads to", path_);
     }
     const fs::path wanted(target_);
     folder_.emplace((wanted.parent_path() /

@@ -21,7 +21,7 @@ class PartTime {
         deadline_(2 * seconds, request.stop),
         limits_{request.memory_bytes, deadline_.token()} {}
 
-  /// Of the questions of this part: the memory of the request, and the token of the deadline.
+  /// What bounds the questions of this part: memory of the request, the token of the deadline.
   [[nodiscard]] const QueryLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] double elapsed() const { return deadline_.elapsed(); }
   /// How much of its seconds is over, at most 1.

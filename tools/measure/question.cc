@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <initializer_list>
 #include <random>
 #include <span>
 #include <vector>
@@ -51,48 +52,35 @@ double side_of(QuestionKind kind) {
   return 0.0;
 }
 
-class Digest {
- public:
-  void add(std::uint64_t n) { value_ = (value_ ^ n) * 0x9e3779b97f4a7c15 + 1; }
-  void add(double n) { add(std::bit_cast<std::uint64_t>(n)); }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0;
-};
+/// A number that tells other numbers apart.
+std::uint64_t digest_of(std::initializer_list<std::uint64_t> numbers) {
+  std::uint64_t digest = 0;
+  for (const std::uint64_t n : numbers) digest = (digest ^ n) * 0x9e3779b97f4a7c15 + 1;
+  return digest;
+}
 
 Answer ask_point(const Question& question, const Terrain& terrain, const LocateRequest& request) {
   const LocateResult result = terrain.locate(std::span(&question.at, 1), request);
-  Digest digest;
-  digest.add(static_cast<std::uint64_t>(result.points[0].state));
-  digest.add(result.points[0].height);
-  return {result.cost, digest.value()};
+  const auto& point = result.points[0];
+  return {result.cost, digest_of({static_cast<std::uint64_t>(point.state),
+                                  std::bit_cast<std::uint64_t>(point.height)})};
 }
 
 Answer ask_sight(const Question& question, const Terrain& terrain, const SightRequest& request) {
   const SightResult result =
       terrain.sight({question.at, kAboveGround, question.to, kAboveGround}, request);
-  Digest digest;
-  digest.add(static_cast<std::uint64_t>(result.verdict));
-  digest.add(result.clearance_min);
-  return {result.cost, digest.value()};
+  return {result.cost, digest_of({static_cast<std::uint64_t>(result.verdict),
+                                  std::bit_cast<std::uint64_t>(result.clearance_min)})};
 }
 
 Answer ask_window(const Terrain& terrain, const RefineRequest& request) {
   const RefinedTin result = terrain.refine(request);
-  Digest digest;
-  digest.add(result.vertices);
-  digest.add(result.triangles);
-  return {result.cost, digest.value()};
+  return {result.cost, digest_of({result.vertices, result.triangles})};
 }
 
 Answer ask_isoline(const Terrain& terrain, const IsolineRequest& request) {
   const Isolines result = terrain.isolines(request);
-  Digest digest;
-  digest.add(std::uint64_t{result.size()});
-  digest.add(result.points());
-  digest.add(result.crossed.segments);
-  return {result.cost, digest.value()};
+  return {result.cost, digest_of({result.size(), result.points(), result.crossed.segments})};
 }
 
 }  // namespace

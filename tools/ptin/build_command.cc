@@ -35,13 +35,13 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
                      .range = option.unit == nullptr ? NumberRange::kAny : option.range,
                      .source_unit = option.unit == nullptr ? "" : option.unit,
                      .splits_at_commas = option.has_many && !option.is_file,
-                     .shows_default = option.shows_default,
                      .help = option.help};
   if (option.has_many) row.values(1, ask::kAnyNumberOfValues);
   const auto place = [&](const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, WordOption>) {
       row.into = word_of(field, options);
+      if (row.metavar.empty()) row.metavar = "TEXT";
       row.choices.assign(field.words.begin(), field.words.end());
     } else if constexpr (std::is_same_v<Field, std::optional<std::int64_t> BuildOptions::*>) {
       row.into = [&value = options.*field](const std::string& text) {
@@ -59,18 +59,18 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
   if (std::holds_alternative<std::optional<std::array<double, 4>> BuildOptions::*>(option.field)) {
     row.values(4, 4);
   }
-  return row;
+  return option.shows_default ? row.with_default() : row;
 }
 
 /// The work: its memory, threads and temporary files, and whether it goes on.
 void add_work_options(ask::Parameters& rows, BuildCommand& command) {
   rows.add("memory", &command.memory, "SIZE",
-           "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less\n"
-           "where a cgroup or a resource limit allows less)");
+           "Hard limit on the memory of the process, as 512M or 2G (default: 1G, or less where a "
+           "cgroup or a resource limit allows less)");
   ask::add_threads(
       rows, command.threads,
-      "Threads (default: one a processor that affinity and cgroups leave this process);\n"
-      "fewer are used where memory is short. The output is the same for any number");
+      "Threads (default: one a processor that affinity and cgroups leave this process); fewer are "
+      "used where memory is short. The output is the same for any number");
   rows.add(
       "tmp",
       [&command](const std::string& folder) {
@@ -87,8 +87,8 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
            "Write progress as lines of JSON to this file descriptor")
       .within(NumberRange::kNotNegative);
   rows.add("parts", &command.parts, "N",
-           "Read the source and divide the rest into this many jobs of a batch system, which\n"
-           "`ptin build-part` does")
+           "Read the source and divide the rest into this many jobs of a batch system, which `ptin "
+           "build-part` does")
       .within({.least = 1, .most = 1 << 20})
       .needing("plan");
   rows.add("plan", &command.plan, "FILE", "With --parts: the plan to write for them")
@@ -100,7 +100,7 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
 ask::Parameters build_rows(BuildCommand& command) {
   ask::Parameters rows;
   rows.add("input", &command.inputs, "",
-           "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz\n"
+           "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz "
            "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
            "LandXML")
       .spelled("INPUT")

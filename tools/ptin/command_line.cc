@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/command_line.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <span>
@@ -91,8 +92,7 @@ bool has_name(std::string_view list, std::string_view name) {
 /// What help says of a parameter behind its name: "E Excludes: --vertices".
 std::string help_of_value(const ask::Parameter& row, const ask::Parameters& rows) {
   std::string text = values_of(row);
-  const std::string by_default = row.shows_default ? ask::default_of(row) : std::string();
-  if (!by_default.empty()) text += "=" + by_default;
+  if (!row.default_value.empty()) text += "=" + row.default_value;
   if (row.most_values == ask::kAnyNumberOfValues && !row.metavar.ends_with("...")) text += " ...";
   if (is_at(row.required, ask::Door::kProgram)) text += " REQUIRED";
   std::string needed, excluded;
@@ -124,7 +124,8 @@ void declare(CLI::App& app, const ask::Parameter& row, const ask::Parameters& ro
                             }),
                             help);
     const bool has_any_number = row.repeats || row.most_values == ask::kAnyNumberOfValues;
-    option->expected(static_cast<int>(row.least_values),
+    // An option has a value behind it, even where a list of JSON may be empty.
+    option->expected(static_cast<int>(std::max(row.least_values, 1U)),
                      has_any_number ? -1 : static_cast<int>(row.most_values));
     option->allow_extra_args(!row.repeats && row.most_values > 1);
     option->type_name(values_of(row));

@@ -24,7 +24,7 @@ namespace ptin::tools {
 /// Records of error 0: without them no sample differs. Most of them lie in flat parts.
 struct FlatRecords {
   std::uint64_t records = 0;
-  std::uint64_t bytes = 0;  ///< Of the file: their share of it.
+  std::uint64_t bytes = 0;  ///< Their share of the file.
   /// What to give as --max-error so that a build leaves them out, and little else: a power of ten
   /// below every other error, and far below a step between heights. None where there are none.
   std::optional<double> max_error;

@@ -345,7 +345,7 @@ int run_export(const ExportOptions& options, const Context& context) {
   const auto start = std::chrono::steady_clock::now();
   const Terrain terrain = open_terrain(options.terrain, options.detail.tolerance, context);
   Exported made = export_as(format, options, terrain, context);
-  made.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  made.seconds = seconds_since(start);
   if (context.json) {
     print_json_of(made, terrain.store());
   } else if (!context.quiet) {

@@ -74,7 +74,7 @@ class IsolineLayer {
   std::optional<DxfHeader> header_;          ///< A drawing's, which needs it until it is closed.
   std::optional<VectorFile> file_;           ///< The file of any format but LandXML,
   std::optional<LandXmlContours> contours_;  ///< whose contours are here.
-  ask::Fields<ask::IsolineRow> fields_;      ///< Of a layer that has fields.
+  ask::Fields<ask::IsolineRow> fields_;      ///< Those that the layer has.
   std::uint64_t next_id_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace ptin::tools {
 
 struct PartsPlan {
   BuildCommand command;  ///< As it was given to `ptin build`, its options complete.
-  std::string note;      ///< Of begin_parts().
+  std::string note;      ///< What begin_parts() says.
   std::string folder;    ///< In which the names of files are to be understood.
 };
 

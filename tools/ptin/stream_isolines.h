@@ -61,7 +61,7 @@ class StreamIsolines {
   /// Null without an output.
   std::unique_ptr<IsolineLayer> layer_;
   IsolineChange change_;         ///< The sum over all splits.
-  std::uint64_t numbering_ = 0;  ///< Of the mesh that isolines_ follow.
+  std::uint64_t numbering_ = 0;  ///< The numbering of the mesh that isolines_ follow.
   IsolineLayer::Written last_;
   nlohmann::json steps_ = nlohmann::json::array();
 };

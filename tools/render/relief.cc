@@ -14,6 +14,14 @@ namespace ptin::tools {
 
 namespace {
 
+/// Where the middles of the pixels stand.
+PixelLattice lattice_of(const View& view) {
+  return {{view.window.min_x + (0.5 - view.left) / view.scale_x,
+           view.window.max_y - (0.5 - view.top) / view.scale_y},
+          1 / view.scale_x,
+          -1 / view.scale_y};
+}
+
 constexpr Colour kBackground{255, 255, 255};
 constexpr Colour kVoidColour{228, 228, 230};
 constexpr Colour kHatchColour{202, 202, 206};
@@ -96,6 +104,27 @@ Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per
 }
 
 }  // namespace
+
+TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, const View& view,
+                        const std::stop_token& stop) {
+  const Tin& tin = refined.tin;
+  const bool has_pages = refined.page_of_triangle.size() == tin.triangles.size();
+  TerrainRaster raster;
+  raster.width = view.width;
+  raster.height = view.height;
+  const std::size_t pixels =
+      static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  raster.heights.resize(pixels);
+  raster.states.resize(pixels);
+  raster.pages.resize(has_pages ? pixels : 0);
+  const PixelCentres centres(facts, lattice_of(view), {0, 0, view.width, view.height});
+  PixelSampler<float> sampler(facts, centres, {raster.heights, raster.states, raster.pages});
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) stop_if_asked(stop, "drawing");
+    sampler.add(living_triangle(tin, t), has_pages ? refined.page_of_triangle[t] : kNone);
+  }
+  return raster;
+}
 
 ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page, int reach) {
   ReliefStyle style;

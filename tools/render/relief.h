@@ -1,15 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Shaded relief: light from the north-west, 45 degrees high, over colours by height or by page.
+// What lies under the pixels of a view, and shaded relief of it: light from the north-west, 45 degrees
+// high, over colours by height or by page.
 #pragma once
 
+#include <cstdint>
 #include <stop_token>
+#include <vector>
 
+#include "engine/query/questions.h"
 #include "tools/plot/image.h"
-#include "tools/render/rasterize.h"
 #include "tools/render/view.h"
 
 namespace ptin::tools {
+
+/// What lies under the middle of each pixel.
+struct TerrainRaster {
+  int width = 0;
+  int height = 0;
+  std::vector<float> heights;  ///< NaN unless `states` says kSurface.
+  std::vector<PointState> states;
+  /// The page of each pixel's triangle; empty unless the TIN tells the pages of its triangles.
+  std::vector<std::uint32_t> pages;
+
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(x);
+  }
+};
+
+/// Samples the triangles of `refined` at the middles of the pixels of `view`. Cost: triangles plus
+/// pixels; memory: raster_bytes_per_pixel().
+/// @throws Error cancelled
+[[nodiscard]] TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts,
+                                      const View& view, const std::stop_token& stop = {});
+
+/// Memory of a TerrainRaster, for each pixel.
+[[nodiscard]] constexpr std::uint64_t raster_bytes_per_pixel(bool has_pages) {
+  return sizeof(float) + sizeof(PointState) + (has_pages ? sizeof(std::uint32_t) : 0);
+}
 
 /// How heights become colours and slopes become shades; chosen from what is visible.
 struct ReliefStyle {

@@ -5,7 +5,7 @@ namespace ptin::serve {
 
 namespace {
 
-/// Of an answer beside its body and headers: nodes of the list and the table.
+/// What an answer takes beside its body and headers: nodes of the list and the table.
 constexpr std::uint64_t kBesideBytes = 512;
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/crs/border_move.h"
 #include "engine/number.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
@@ -155,6 +154,11 @@ void add_point(LongText& text, const MapPoint& p) {
   text.add("}");
 }
 
+void add_point(LongText& text, MapPoint p, const Places& places) {
+  places.from_terrain({&p, 1});
+  add_point(text, p);
+}
+
 Places places_of(const Asked& asked) {
   return {asked.collection->crs, asked.question.text("crs"), asked.collection->bounds,
           asked.request.share};
@@ -163,9 +167,8 @@ Places places_of(const Asked& asked) {
 Json certainty_json(const Asked& asked, double certified_error, double certified_deviation,
                     bool exact) {
   return ask::answer_fields().told(kObject).object_of(
-      {certified_error, certified_deviation,
-       border_moved_at_most(asked.terrain().store(), certified_error), exact,
-       &asked.collection->crs});
+      ask::facts_of({certified_error, certified_deviation}, exact, asked.terrain().store(),
+                    asked.collection->crs));
 }
 
 void check_detail(const Asked& asked, const DetailRequest& detail) {

@@ -76,6 +76,11 @@ constexpr std::uint64_t kAnswerBytesOfPlace = 1536;
 /// certain it is, as Ptin-Certified-Error and Ptin-Exact; and whether the header Accept chose its format.
 [[nodiscard]] http::Response answered(const Asked& asked, std::string text, std::string_view media,
                                       const QueryCost& cost, double certified_error, bool exact);
+template <typename Result>
+[[nodiscard]] http::Response answered(const Asked& asked, std::string text, std::string_view media,
+                                      const Result& result) {
+  return answered(asked, std::move(text), media, result.cost, result.certified_error, result.exact);
+}
 
 /// The object that every answer in JSON has beside these headers.
 [[nodiscard]] Json certainty_json(const Asked& asked, double certified_error,
@@ -135,6 +140,8 @@ template <typename Row, typename RowAt, typename AddGeometry>
 }
 /// The object of GeoJSON that stands for a position: {"type":"Point","coordinates":[x,y]}.
 void add_point(LongText& text, const MapPoint& p);
+/// The same of a position in map units.
+void add_point(LongText& text, MapPoint p, const Places& places);
 void add_pair(LongText& text, const MapPoint& p);
 
 /// Positions of the client in the CRS that `crs` names.

@@ -13,14 +13,14 @@ namespace ptin::serve {
 
 namespace {
 
-Json schema_of(const ask::Parameter& row) {
+Json type_of(const ask::Parameter& row) {
   if (ask::is_flag(row)) return {{"type", "boolean"}};
   if (ask::is_text(row)) {
     Json schema = {{"type", "string"}};
     for (const std::string_view choice : row.choices) schema["enum"].push_back(choice);
     return schema;
   }
-  const NumberRange& range = ask::range_at(row, ask::Door::kService);
+  const NumberRange range = ask::range_at(row, ask::Door::kService);
   const bool is_whole = ask::is_whole(row);
   const double least = is_whole ? std::max(0.0, range.least) : range.least;
   Json number = {{"type", is_whole ? "integer" : "number"}};
@@ -33,14 +33,21 @@ Json schema_of(const ask::Parameter& row) {
   return schema;
 }
 
-/// Adds the help, and the example as a value of the parameter's type.
+/// A value of the parameter's type.
+Json json_value(const ask::Parameter& row, std::string text) {
+  if (ask::is_list(row)) return Json::parse("[" + text + "]");
+  return ask::is_text(row) ? Json(std::move(text)) : Json::parse(text);
+}
+
+Json schema_of(const ask::Parameter& row) {
+  Json schema = type_of(row);
+  if (!row.default_value.empty()) schema["default"] = json_value(row, row.default_value);
+  return schema;
+}
+
 void add_help(Json& json, const ask::Parameter& row) {
   json["description"] = ask::help_at(row, ask::Door::kService);
-  const std::string example(row.example);
-  if (example.empty()) return;
-  json["example"] = ask::is_list(row)   ? Json::parse("[" + example + "]")
-                    : ask::is_text(row) ? Json(example)
-                                        : Json::parse(example);
+  if (!row.example.empty()) json["example"] = json_value(row, std::string(row.example));
 }
 
 Json parameter_json(const ask::Parameter& row) {

@@ -259,8 +259,7 @@ http::Response answer_area(const Asked& asked) {
 
   std::string text =
       points_in(format, asked, places, names, inner.at, result, coverage_of(grid, inner, result));
-  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
-                  result.exact);
+  return answered(asked, std::move(text), format.media, result);
 }
 
 }  // namespace ptin::serve

@@ -25,7 +25,7 @@ namespace ptin::serve {
 /// Which file stands under a path: it changes when the file is replaced, or written to.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0, bytes = 0;
-  std::int64_t seconds = 0, nanoseconds = 0;  ///< Of its last change.
+  std::int64_t seconds = 0, nanoseconds = 0;  ///< When it last changed.
   friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
 };
 
@@ -35,13 +35,13 @@ struct Collection {
   Collection(std::string name, const std::string& path);
 
   std::string id;
-  /// Of what stood under the path before the file was opened: where another one took its place
+  /// What stood under the path before the file was opened: where another file took its place
   /// meanwhile, that is seen the next time.
   FileIdentity identity;
   Terrain terrain;
   CrsFacts crs;
   Ground ground;
-  std::string fingerprint;        ///< Of the content, as hexadecimal digits.
+  std::string fingerprint;        ///< A hash of the content, as hexadecimal digits.
   Window bounds{};                ///< Map units.
   std::optional<Window> lon_lat;  ///< Degrees east and north of CRS84; none: not known.
   mutable TileSets tile_sets;

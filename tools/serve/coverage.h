@@ -28,10 +28,10 @@ struct CoverageValue {
 /// Heights over a domain, in the CRS of the client.
 struct Coverage {
   std::span<const MapPoint> positions;  ///< One: a Point; several: a MultiPoint. None: a Grid.
-  Json grid_axes;                       ///< Of a Grid: x and y.
-  std::vector<std::size_t> shape;  ///< Of the arrays, and the names of its axes; one number: none.
-  std::vector<std::string> axes;
-  std::size_t size = 0;  ///< Of values.
+  Json grid_axes;                       ///< Axes of a Grid: x and y.
+  std::vector<std::size_t> shape;       ///< Lengths of the arrays' axes; one number: none.
+  std::vector<std::string> axes;        ///< Their names.
+  std::size_t size = 0;                 ///< How many values there are.
   std::function<CoverageValue(std::size_t)> value;
 };
 

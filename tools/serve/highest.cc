@@ -26,14 +26,8 @@ http::Response answer_highest(const Asked& asked) {
   more["ptin:certainty"] = certainty_of(asked, result);
   std::string text = features_text(
       asked, ask::highest_place_fields(), all.size(), [&](std::size_t i) { return all[i]; },
-      [&](LongText& to, std::size_t i) {
-        MapPoint p = all[i].at.position;
-        places.from_terrain({&p, 1});
-        add_point(to, p);
-      },
-      more);
-  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
-                  result.exact);
+      [&](LongText& to, std::size_t i) { add_point(to, all[i].at.position, places); }, more);
+  return answered(asked, std::move(text), format.media, result);
 }
 
 }  // namespace ptin::serve

@@ -26,7 +26,7 @@ constexpr std::size_t kMostAnswered = 1000;  // Levels of one question.
 
 /// Levels that the terrain has, and not too many of them.
 std::vector<double> levels_of(const Asked& asked, const ask::Levels& levels) {
-  if (!levels.given()) {
+  if (!levels.given() && !asked.question.has("level")) {
     throw Problem(400, "give interval or level: the heights of the lines").at("interval");
   }
   const double low = asked.facts().min_height, high = asked.facts().max_height;
@@ -83,7 +83,7 @@ http::Response answer_isolines(const Asked& asked) {
               "bbox");
   return answered(asked,
                   text_of(asked, lines, places, {{"ptin:certainty", certainty_of(asked, lines)}}),
-                  format.media, lines.cost, lines.certified_error, lines.exact);
+                  format.media, lines);
 }
 
 }  // namespace ptin::serve

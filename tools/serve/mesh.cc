@@ -85,8 +85,7 @@ http::Response answer_mesh(const Asked& asked) {
   tools::Mesh mesh = tools::surface_mesh(refined, asked.facts());
   tools::set_crs(mesh, asked.collection->crs, asked.facts());
   http::Response response =
-      answered(asked, file_of(mesh, format.name == "glb", asked), format.media, refined.cost,
-               refined.certified_error, refined.exact);
+      answered(asked, file_of(mesh, format.name == "glb", asked), format.media, refined);
   response.add("Ptin-Vertices", std::to_string(mesh.vertices.size()));
   response.add("Ptin-Triangles", std::to_string(mesh.triangles.size()));
   return response;

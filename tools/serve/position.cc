@@ -45,8 +45,7 @@ http::Response answer_position(const Asked& asked) {
   std::string text = format.name == "json" ? plain_json(client, result, asked, places)
                                            : points_in(format, asked, places, names, client, result,
                                                        coverage_at(client, value));
-  return answered(asked, std::move(text), format.media, result.cost, result.certified_error,
-                  result.exact);
+  return answered(asked, std::move(text), format.media, result);
 }
 
 }  // namespace ptin::serve

@@ -96,8 +96,7 @@ http::Response respond(const Asked& asked, const ProfileRequest& request,
     text = points_text(asked, ask::profile_fields(), along.client.size(), row_at,
                        facts_of(along, asked));
   }
-  return answered(asked, std::move(text), format.media, along.profile.cost,
-                  along.profile.certified_error, along.profile.exact);
+  return answered(asked, std::move(text), format.media, along.profile);
 }
 
 }  // namespace

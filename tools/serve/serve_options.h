@@ -22,13 +22,13 @@ struct ServedFile {
 struct QuestionLimits {
   std::size_t points = 10000;
   std::size_t pairs = 1000;
-  std::size_t vertices = 500000;       ///< Of a mesh, and of lines.
+  std::size_t vertices = 500000;       ///< The most that a mesh or lines may have.
   std::size_t held_vertices = 500000;  ///< That a receiver of a stream has.
   std::size_t have = 64;               ///< Servings that a receiver has had.
   std::size_t pixels = std::size_t{4} << 20;
   std::uint64_t stream_bytes = std::uint64_t{256} << 10;     ///< Without `max_bytes`.
   std::uint64_t most_stream_bytes = std::uint64_t{4} << 20;  ///< With it.
-  std::uint64_t question_memory = std::uint64_t{64} << 20;   ///< Of one question.
+  std::uint64_t question_memory = std::uint64_t{64} << 20;   ///< Memory for one question.
 };
 
 /// Who may read /metrics.
@@ -46,10 +46,10 @@ struct ServeOptions {
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.
-  std::string cors_origin;  ///< Of pages that may read answers; "*" for all; empty: none.
+  std::string cors_origin;  ///< Origin of pages that may read answers; "*" for all; empty: none.
   bool offers_files = false;
   MetricsFor metrics = MetricsFor::kDefault;
-  std::string version;  ///< Of the program; part of every ETag.
+  std::string version;  ///< Version of the program; part of every ETag.
 };
 
 /// Divides the memory among the lanes: sweeps and tiles take all of a question's, points a quarter.

@@ -73,9 +73,7 @@ std::string geojson_of(const Viewshed& seen, const Asked& asked, const Places& p
   check_count(seen.vertices.size(), asked.options.question.vertices, "vertices", "vertices",
               "radius");
   const auto add_geometry = [&](LongText& text, std::size_t i) {
-    MapPoint p = seen.vertices[i].position;
-    places.from_terrain({&p, 1});
-    add_point(text, p);
+    add_point(text, seen.vertices[i].position, places);
   };
   Json more = ask::viewshed_fields().told(kObject).object_of(seen);
   more["ptin:certainty"] = certainty_of(asked, seen);
@@ -109,9 +107,8 @@ http::Response answer_viewshed(const Asked& asked) {
   const ViewshedRequest request = request_of(asked, question, places, as_picture);
   if (as_picture) check_pixels(asked, request);
   const Viewshed seen = viewshed_of(asked, request);
-  http::Response response =
-      answered(asked, as_picture ? png_of(seen) : geojson_of(seen, asked, places), format.media,
-               seen.cost, seen.certified_error, seen.exact);
+  http::Response response = answered(
+      asked, as_picture ? png_of(seen) : geojson_of(seen, asked, places), format.media, seen);
   if (as_picture) response.add("Ptin-Bounds", bounds_text(seen));
   return response;
 }

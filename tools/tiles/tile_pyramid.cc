@@ -291,8 +291,7 @@ TileMesh TilePyramid::mesh(const TileId& tile, const QueryLimits& limits) const 
   mesh.add(*tin, terrain_.store().facts(), limits.stop);
   TileMesh made = TileMeshMaker(mesh, box, tile, options_.most_vertices).made(limits.stop);
   made.cost = parts.cost();
-  made.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  made.cost.seconds = seconds_since(start);
   return made;
 }
 

@@ -240,6 +240,28 @@ class OwnCrs {
   SourceWarnings& warnings_;
 };
 
+/// True when two texts name the same CRS once `prepare` has seen both. A text that GDAL does not
+/// understand is the same as itself alone.
+template <class Prepare>
+bool are_same(const std::string& wkt_a, const std::string& wkt_b, const Prepare& prepare) {
+  if (wkt_a == wkt_b) {
+    return true;
+  }
+  if (wkt_a.empty() || wkt_b.empty()) {
+    return false;
+  }
+  const GdalSession session;
+  OGRSpatialReference a, b;
+  if (!read(wkt_a, a) || !read(wkt_b, b)) {
+    return false;
+  }
+  prepare(a);
+  prepare(b);
+  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
+                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
+  return a.IsSame(&b, options) != 0;
+}
+
 /// Warns of axes that point elsewhere than those of a terrain.
 void warn_of_axes(const Crs& crs, const std::string& file, SourceWarnings& warnings) {
   const GdalSession session;
@@ -327,43 +349,16 @@ bool is_vertical_crs(const std::string& text) {
 }
 
 bool is_same_crs(const std::string& wkt_a, const std::string& wkt_b) {
-  if (wkt_a == wkt_b) {
-    return true;
-  }
-  if (wkt_a.empty() || wkt_b.empty()) {
-    return false;
-  }
-  const GdalSession session;
-  OGRSpatialReference a, b;
-  if (!read(wkt_a, a) || !read(wkt_b, b)) {
-    return false;
-  }
-  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
-                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
-  return a.IsSame(&b, options) != 0;
+  return are_same(wkt_a, wkt_b, [](OGRSpatialReference&) {});
 }
 
 bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b) {
-  if (wkt_a == wkt_b) {
-    return true;
-  }
-  if (wkt_a.empty() || wkt_b.empty()) {
-    return false;
-  }
-  const GdalSession session;
-  OGRSpatialReference a, b;
-  if (!read(wkt_a, a) || !read(wkt_b, b)) {
-    return false;
-  }
-  for (OGRSpatialReference* srs : {&a, &b}) {
-    srs->StripVertical();
-    if (srs->GetAxesCount() == 3) {
-      srs->DemoteTo2D(nullptr);
+  return are_same(wkt_a, wkt_b, [](OGRSpatialReference& srs) {
+    srs.StripVertical();
+    if (srs.GetAxesCount() == 3) {
+      srs.DemoteTo2D(nullptr);
     }
-  }
-  const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
-                                 "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
-  return a.IsSame(&b, options) != 0;
+  });
 }
 
 void set_crs(TerrainFrame& frame, const Crs& crs) {

@@ -17,7 +17,8 @@
 namespace ptin {
 
 struct GdalSessionAccess {
-  static void note(GdalSession& session, CPLErr severity, const char* text) {
+  static void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* text) {
+    auto& session = *static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
     if (severity >= CE_Failure) {
       session.note_failure(text);
     } else if (severity == CE_Warning) {
@@ -27,10 +28,6 @@ struct GdalSessionAccess {
 };
 
 namespace {
-
-void CPL_STDCALL collect(CPLErr severity, CPLErrorNum, const char* text) {
-  GdalSessionAccess::note(*static_cast<GdalSession*>(CPLGetErrorHandlerUserData()), severity, text);
-}
 
 /// Parts of messages that bear neither on where a sample lies nor on how high.
 constexpr std::array<const char*, 21> kHarmless = {"couldn't be converted",
@@ -82,7 +79,7 @@ std::optional<std::string> beginning_of_file(const std::string& path, std::size_
 }
 
 GdalSession::GdalSession() {
-  CPLPushErrorHandlerEx(&collect, this);
+  CPLPushErrorHandlerEx(&GdalSessionAccess::collect, this);
   static std::once_flag registered;
   std::call_once(registered, [] {
     silence_proj();

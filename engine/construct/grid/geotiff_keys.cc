@@ -83,6 +83,19 @@ std::uint16_t code_of(const std::vector<Entry>& entries, Key key) {
   return found == entries.end() ? kUndefined : (*found)[3];
 }
 
+/// The text of a key; "" where it is not there.
+std::string text_of_key(const std::vector<Entry>& entries, Key key, const Bytes& text) {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& e) { return e[0] == key && e[1] == 34737; });
+  if (found == entries.end() || (*found)[3] >= text.size()) {
+    return "";
+  }
+  const std::size_t begin = (*found)[3];
+  const std::string all(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end());
+  const std::string own = all.substr(0, (*found)[2]);
+  return own.substr(0, own.find_first_of(std::string("|\0", 2)));
+}
+
 /// A TIFF of one pixel that holds keys: GDAL opens it, and so says what they mean.
 class KeyTiff {
  public:
@@ -194,7 +207,9 @@ class KeyReader {
   }
 
   /// The words for the vertical part; "" for none.
-  [[nodiscard]] std::string citation(const std::vector<Entry>& entries) const;
+  [[nodiscard]] std::string citation(const std::vector<Entry>& entries) const {
+    return text_of_key(entries, kVerticalCitation, keys_.text);
+  }
 
  private:
   const GeoTiffKeys& keys_;
@@ -232,23 +247,6 @@ void tell_model(std::vector<Entry>& entries) {
     std::erase_if(entries, [](const Entry& e) { return e[0] == kModelType; });
     entries.insert(entries.begin(), Entry{kModelType, 0, 1, model});
   }
-}
-
-/// The text of a key; "" where it is not there.
-std::string text_of_key(const std::vector<Entry>& entries, Key key, const Bytes& text) {
-  const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& e) { return e[0] == key && e[1] == 34737; });
-  if (found == entries.end() || (*found)[3] >= text.size()) {
-    return "";
-  }
-  const std::size_t begin = (*found)[3];
-  const std::string all(text.begin() + static_cast<std::ptrdiff_t>(begin), text.end());
-  const std::string own = all.substr(0, (*found)[2]);
-  return own.substr(0, own.find_first_of(std::string("|\0", 2)));
-}
-
-std::string KeyReader::citation(const std::vector<Entry>& entries) const {
-  return text_of_key(entries, kVerticalCitation, keys_.text);
 }
 
 /// Adds heights above the ellipsoid to a horizontal CRS. Such a CRS has metres: with another unit the

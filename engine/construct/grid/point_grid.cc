@@ -153,34 +153,20 @@ bool UnitsTaken::are_split() const noexcept {
   return last > first + kHalf && longest >= kHalf;
 }
 
-std::int64_t DecimalRange::lowest(const StepCounter& counter) const noexcept {
-  std::int64_t low = INT64_MAX;
+DecimalRange::Extreme DecimalRange::in_steps(const StepCounter& counter) const noexcept {
+  Extreme all;
   for (int d = 0; d <= decimals(); ++d) {
     const Extreme& e = extremes_[static_cast<std::size_t>(d)];
     if (e.low <= e.high) {
-      low = std::min(low, counter.steps({e.low, d}));
+      all.low = std::min(all.low, counter.steps({e.low, d}));
+      all.high = std::max(all.high, counter.steps({e.high, d}));
     }
   }
-  return low;
-}
-
-std::int64_t DecimalRange::highest(const StepCounter& counter) const noexcept {
-  std::int64_t high = INT64_MIN;
-  for (int d = 0; d <= decimals(); ++d) {
-    const Extreme& e = extremes_[static_cast<std::size_t>(d)];
-    if (e.low <= e.high) {
-      high = std::max(high, counter.steps({e.high, d}));
-    }
-  }
-  return high;
+  return all;
 }
 
 double PointGrid::shift(const SourcePoint& p) const noexcept {
-  if (x.is_exact() && y.is_exact() && !drops_digits) {
-    return 0.0;
-  }
-  const double dx = x.shift(p.x), dy = y.shift(p.y);
-  return std::sqrt(dx * dx + dy * dy);
+  return x.is_exact() && y.is_exact() && !drops_digits ? 0.0 : shift_of_line(p);
 }
 
 double PointGrid::shift_of_line(const SourcePoint& p) const noexcept {

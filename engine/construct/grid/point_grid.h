@@ -69,14 +69,19 @@ class DecimalRange {
   /// The most that stay when each is rounded to at most so many, and loses the zeros at its end.
   [[nodiscard]] int decimals_rounded_to(int decimals) const noexcept;
   /// The steps of the smallest decimal; INT64_MAX where none was added.
-  [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept;
+  [[nodiscard]] std::int64_t lowest(const StepCounter& counter) const noexcept {
+    return in_steps(counter).low;
+  }
   /// The steps of the largest decimal; INT64_MIN where none was added.
-  [[nodiscard]] std::int64_t highest(const StepCounter& counter) const noexcept;
+  [[nodiscard]] std::int64_t highest(const StepCounter& counter) const noexcept {
+    return in_steps(counter).high;
+  }
 
  private:
   struct Extreme {
     std::int64_t low = INT64_MAX, high = INT64_MIN;
   };
+  [[nodiscard]] Extreme in_steps(const StepCounter& counter) const noexcept;
   void round(Decimal d) noexcept;
   std::array<Extreme, 19> extremes_;  ///< By decimals: only such mantissas can be compared.
   /// By decimals to round to: the most that stay of those that have more.

@@ -58,28 +58,10 @@ class Layout {
     out.directed.clear();
   }
   void add(const Sample& s) {
-    const double z = s.reach < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_;
-    x_[n_] = static_cast<double>(s.position.x - origin_.x);
-    y_[n_] = static_cast<double>(s.position.y - origin_.y);
-    z_[n_] = z;
-    largest_ = std::max(largest_, std::abs(z));
-    if ((s.side_log | s.direction) != 0) [[unlikely]] {
-      add_special(s);
-    }
-    ++n_;
+    add_at(s, s.reach < 0.0F ? 0.0 : code_of<type>(s.height) - origin_code_);
   }
   /// As add(), for samples that have heights.
-  void add_surface(const Sample& s) {
-    const double z = code_of<type>(s.height) - origin_code_;
-    x_[n_] = static_cast<double>(s.position.x - origin_.x);
-    y_[n_] = static_cast<double>(s.position.y - origin_.y);
-    z_[n_] = z;
-    largest_ = std::max(largest_, std::abs(z));
-    if ((s.side_log | s.direction) != 0) [[unlikely]] {
-      add_special(s);
-    }
-    ++n_;
-  }
+  void add_surface(const Sample& s) { add_at(s, code_of<type>(s.height) - origin_code_); }
   /// As add(), where surface and void meet.
   void add_with_charge(const Sample& s) {
     const bool directed = s.direction != kNoDirection;
@@ -114,6 +96,16 @@ class Layout {
   [[nodiscard]] double largest() const noexcept { return largest_; }
 
  private:
+  void add_at(const Sample& s, double z) {
+    x_[n_] = static_cast<double>(s.position.x - origin_.x);
+    y_[n_] = static_cast<double>(s.position.y - origin_.y);
+    z_[n_] = z;
+    largest_ = std::max(largest_, std::abs(z));
+    if ((s.side_log | s.direction) != 0) [[unlikely]] {
+      add_special(s);
+    }
+    ++n_;
+  }
   void add_special(const Sample& s) {
     if (s.direction != kNoDirection) {
       out_.directed.push_back({static_cast<std::uint32_t>(n_), s.direction, s.reach});

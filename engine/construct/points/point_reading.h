@@ -55,7 +55,7 @@ struct PortionRead {
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
   std::uint64_t sample_step = 1;
-  ArrayFileFacts spool;  ///< Of the file of its points.
+  ArrayFileFacts spool;  ///< The file of its points.
 };
 template <class File, MaybeConst<PortionRead> Read>
 void serialize(File& file, Read& r) {

@@ -29,8 +29,6 @@ PointTasks::PointTasks(std::vector<std::string> inputs, SourceOptions options, P
       files_(std::move(files)),
       reader_(inputs_, options_, files_) {}
 
-PointTasks::~PointTasks() = default;
-
 TaskList PointTasks::reading(const ReadingPlan& plan) const {
   ArrayFileWriter file(files_.files, files_.path(kReadingPlan, 0));
   file.values(plan);

@@ -25,7 +25,6 @@ namespace ptin {
 class PointTasks final : public TaskWorker {
  public:
   PointTasks(std::vector<std::string> inputs, SourceOptions options, PointFiles files);
-  ~PointTasks() override;
 
   /// @return  The facts of what came of it, TileFile::kIndex; none of a portion that has quotes.
   /// @throws Error  as PortionReader::read(), share_out() and sort_range()

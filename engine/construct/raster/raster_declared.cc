@@ -12,8 +12,8 @@
 #include <gdal_rat.h>
 
 #include "engine/construct/grid/dataset_crs.h"
+#include "engine/construct/grid/depth_names.h"
 #include "engine/construct/grid/gdal_session.h"
-#include "engine/construct/raster/raster_depths.h"
 #include "engine/construct/raster/raster_header.h"
 #include "engine/construct/raster/raster_place.h"
 #include "engine/crs/height_unit.h"
@@ -22,6 +22,47 @@
 
 namespace ptin {
 namespace {
+
+constexpr const char* kTurn =
+    "; turn the sign of the values, as with 'gdal_calc.py -A FILE --calc=-A --outfile=HEIGHTS.tif'";
+
+std::string item(GDALRasterBand& band, const char* name) {
+  const char* const value = band.GetMetadataItem(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Refuses a band that says that its values grow downwards: by the attribute `positive`, which is
+/// "down", or by a `standard_name` of depths, as the conventions of netCDF have them. Warns of one
+/// that has merely a name of depths. A band whose `positive` is "up" has heights, whatever its name.
+/// @throws Error invalid_argument  as above
+void refuse_depths(GDALRasterBand& band, const std::string& path, SourceWarnings& warnings) {
+  const std::string positive = item(band, "positive");
+  if (EQUAL(positive.c_str(), "up")) {
+    return;
+  }
+  if (EQUAL(positive.c_str(), "down")) {
+    refuse("the values are positive downwards (positive = '" + positive +
+               "'): they are depths, and a terrain has heights" + kTurn,
+           path);
+  }
+  const std::string standard_name = item(band, "standard_name");
+  if (is_name_of_depths(standard_name)) {
+    refuse("the values are depths, by their standard_name '" + standard_name +
+               "', and a terrain has heights" + kTurn,
+           path);
+  }
+  for (const std::string& name : {item(band, "long_name"), item(band, "NETCDF_VARNAME"),
+                                  std::string(band.GetDescription())}) {
+    if (is_name_of_depths(name)) {
+      warnings.add({"depths",
+                    "the values have a name of depths, '" + name +
+                        "', and are taken for heights, which grow upwards; if they grow downwards" +
+                        std::string(kTurn).replace(0, 1, ","),
+                    path});
+      return;
+    }
+  }
+}
 
 /// The names of the rasters in a file that holds several. Drivers list them as a whole; not all answer
 /// for a single one.

@@ -127,7 +127,7 @@ void check_heights(const SampleRange& w, std::span<const T> values,
 
 struct RasterPart::Bands : RasterBands {
   GDALDatasetUniquePtr data;
-  GDALDatasetUniquePtr backed;       ///< Of a VRT, with a background.
+  GDALDatasetUniquePtr backed;       ///< A VRT with a background.
   GDALRasterBand* values = nullptr;  ///< The heights, where they are read.
 
   void look_behind(RawType raw);

@@ -50,7 +50,14 @@ class Stepper {
   std::int64_t remainder_ = 0;
 };
 
-std::int64_t sign(std::int64_t v) noexcept { return v < 0 ? -1 : 1; }
+/// Where an edge crosses one of a family of lines.
+struct Crossing {
+  std::int64_t steps;  ///< From the edge's first end, across the lines.
+  std::int64_t floor;  ///< How far it is from there in x, or in y, rounded down.
+  bool is_whole;       ///< Nothing was rounded.
+  double fraction;     ///< What was.
+  double rise;         ///< The edge's height there, above its first end.
+};
 
 }  // namespace
 
@@ -84,6 +91,24 @@ struct RasterSurface::Line {
     const double b = static_cast<double>(size - 1 - from) / static_cast<double>(length);
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
+  }
+  /// Calls take(crossing) for those that may lie in the window.
+  /// @param across  From the first end to the last, across the lines: their crossings divide it.
+  /// @param length  Likewise, in the coordinate that is divided along with it.
+  template <class Take>
+  void visit(std::int64_t across, std::int64_t length, const Take& take) const {
+    const std::int64_t n = std::abs(across);
+    if (n < 2) {
+      return;
+    }
+    const double inverse = 1.0 / static_cast<double>(n);
+    Stepper at(length, n, first(n));
+    for (std::int64_t i = first(n); i < end(n); ++i) {
+      at.step();
+      take(Crossing{across < 0 ? -i : i, at.floor(), at.remainder() == 0,
+                    static_cast<double>(at.remainder()) * inverse,
+                    rise * (static_cast<double>(i) * inverse)});
+    }
   }
 };
 
@@ -121,96 +146,51 @@ void RasterSurface::mark_rising() {
 
 /// Crossings with the lines x = constant: between two samples of a column, or at a sample.
 void RasterSurface::cross_columns(const Line& l, GapMaximum& gap) const {
-  const std::int64_t n = std::abs(l.dx);
-  if (n < 2) {
-    return;
-  }
-  const double inverse = 1.0 / static_cast<double>(n);
-  Stepper y(l.dy, n, l.first(n));
-  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
-    y.step();
-    const std::int64_t column = l.x + sign(l.dx) * i;
-    const std::int64_t row = l.y + y.floor();
-    if (!holds(column, row) || (y.remainder() != 0 && row + 1 == height_)) {
-      continue;
+  l.visit(l.dx, l.dy, [&](const Crossing& c) {
+    const std::int64_t column = l.x + c.steps, row = l.y + c.floor;
+    if (!holds(column, row) || (!c.is_whole && row + 1 == height_)) {
+      return;
     }
     const std::size_t p = at(column, row);
-    const std::size_t q = y.remainder() == 0 ? p : p + static_cast<std::size_t>(width_);
-    add(p, q, static_cast<double>(y.remainder()) * inverse,
-        l.rise * (static_cast<double>(i) * inverse), gap);
-  }
+    add(p, c.is_whole ? p : p + static_cast<std::size_t>(width_), c.fraction, c.rise, gap);
+  });
 }
 
 /// Crossings with the lines y = constant.
 void RasterSurface::cross_rows(const Line& l, GapMaximum& gap) const {
-  const std::int64_t n = std::abs(l.dy);
-  if (n < 2) {
-    return;
-  }
-  const double inverse = 1.0 / static_cast<double>(n);
-  Stepper x(l.dx, n, l.first(n));
-  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
-    x.step();
-    const std::int64_t column = l.x + x.floor();
-    const std::int64_t row = l.y + sign(l.dy) * i;
-    if (!holds(column, row) || (x.remainder() != 0 && column + 1 == width_)) {
-      continue;
+  l.visit(l.dy, l.dx, [&](const Crossing& c) {
+    const std::int64_t column = l.x + c.floor, row = l.y + c.steps;
+    if (!holds(column, row) || (!c.is_whole && column + 1 == width_)) {
+      return;
     }
     const std::size_t p = at(column, row);
-    const std::size_t q = x.remainder() == 0 ? p : p + 1;
-    add(p, q, static_cast<double>(x.remainder()) * inverse,
-        l.rise * (static_cast<double>(i) * inverse), gap);
-  }
+    add(p, c.is_whole ? p : p + 1, c.fraction, c.rise, gap);
+  });
 }
 
-/// Crossings with the lines y - x = constant, where the cell is cut along its rising diagonal.
+/// Crossings with the lines y - x = constant, where the cell is cut along its rising diagonal. Those
+/// at a sample are crossings with a row or a column too.
 void RasterSurface::cross_rising(const Line& l, GapMaximum& gap) const {
-  const std::int64_t d = l.dy - l.dx;
-  const std::int64_t n = std::abs(d);
-  if (n < 2) {
-    return;
-  }
-  const double inverse = 1.0 / static_cast<double>(n);
-  Stepper x(l.dx, n, l.first(n));
-  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
-    x.step();
-    if (x.remainder() == 0) {
-      continue;  // at a sample: a crossing with a row or a column too
-    }
-    const std::int64_t column = l.x + x.floor();
-    const std::int64_t row = column + (l.y - l.x) + sign(d) * i;
-    if (holds(column, row) && holds(column + 1, row + 1) && rises(column, row)) {
+  l.visit(l.dy - l.dx, l.dx, [&](const Crossing& c) {
+    const std::int64_t column = l.x + c.floor, row = column + (l.y - l.x) + c.steps;
+    if (!c.is_whole && holds(column, row) && holds(column + 1, row + 1) && rises(column, row)) {
       const std::size_t p = at(column, row);
-      add(p, p + static_cast<std::size_t>(width_) + 1, static_cast<double>(x.remainder()) * inverse,
-          l.rise * (static_cast<double>(i) * inverse), gap);
+      add(p, p + static_cast<std::size_t>(width_) + 1, c.fraction, c.rise, gap);
     }
-  }
+  });
 }
 
 /// Crossings with the lines y + x = constant, where the cell is cut along its falling diagonal.
 void RasterSurface::cross_falling(const Line& l, GapMaximum& gap) const {
-  const std::int64_t d = l.dy + l.dx;
-  const std::int64_t n = std::abs(d);
-  if (n < 2) {
-    return;
-  }
-  const double inverse = 1.0 / static_cast<double>(n);
-  Stepper x(l.dx, n, l.first(n));
-  for (std::int64_t i = l.first(n); i < l.end(n); ++i) {
-    x.step();
-    if (x.remainder() == 0) {
-      continue;
+  l.visit(l.dy + l.dx, l.dx, [&](const Crossing& c) {
+    const std::int64_t column = l.x + c.floor;
+    // The diagonal's lower right end is (column + 1, row).
+    const std::int64_t row = (l.y + l.x) + c.steps - column - 1;
+    if (!c.is_whole && holds(column, row) && holds(column + 1, row + 1) && !rises(column, row)) {
+      const std::size_t p = at(column, row + 1);
+      add(p, p + 1 - static_cast<std::size_t>(width_), c.fraction, c.rise, gap);
     }
-    const std::int64_t column = l.x + x.floor();
-    const std::int64_t row = (l.y + l.x) + sign(d) * i - column -
-                             1;  // the diagonal's lower right end is (column + 1, row)
-    if (holds(column, row) && holds(column + 1, row + 1) && !rises(column, row)) {
-      const std::size_t upper_left = at(column, row + 1);
-      add(upper_left, upper_left + 1 - static_cast<std::size_t>(width_),
-          static_cast<double>(x.remainder()) * inverse, l.rise * (static_cast<double>(i) * inverse),
-          gap);
-    }
-  }
+  });
 }
 
 RasterSurface::Line RasterSurface::line_of(const EdgeEnd& a, const EdgeEnd& b) const noexcept {

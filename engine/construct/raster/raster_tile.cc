@@ -95,22 +95,16 @@ BorderWitnesses witnesses_of(const Tin& outer_tin, const RasterSamples& samples,
       {outer_tin, goes_on_beyond(samples.raster, samples.range), is_inner, samples.step,
        static_cast<double>(kMargin - 1) * std::min(samples.step.x, samples.step.y),
        kFarthest * std::max(samples.step.x, samples.step.y)});
-  BorderWitnesses own;
-  const auto n = static_cast<std::size_t>(window.samples());
-  own.kind.reserve(n);
-  own.nearest.reserve(n);
-  own.reach.reserve(n);
-  own.region.reserve(n);
-  own.doubt.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t from = inner.outer_sample(i);
-    own.kind.push_back(found.kind[from]);
-    own.nearest.push_back(found.nearest[from]);
-    own.reach.push_back(found.reach[from]);
-    own.region.push_back(found.region[from]);
-    own.doubt.push_back(found.doubt[from]);
-  }
-  own.corners = std::move(found.corners);
+  const auto own_of = [&]<class T>(const std::vector<T>& all) {
+    std::vector<T> own;
+    own.reserve(static_cast<std::size_t>(window.samples()));
+    for (std::size_t i = 0; i < window.samples(); ++i) {
+      own.push_back(all[inner.outer_sample(i)]);
+    }
+    return own;
+  };
+  BorderWitnesses own{own_of(found.kind),   own_of(found.nearest), own_of(found.reach),
+                      own_of(found.region), own_of(found.doubt),   std::move(found.corners)};
   for (CornerWitness& w : own.corners) {
     w.triangle = inner.inner_triangle(w.triangle);
   }

@@ -1,19 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/read/land_xml.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <initializer_list>
 #include <utility>
 
 #include <expat.h>
+#include <iconv.h>
 
-#include "engine/construct/read/xml_encoding.h"
+#include "engine/construct/read/tin_reader.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 
 namespace ptin {
 
 namespace {
+
+// NOLINTNEXTLINE(performance-no-int-to-ptr): how POSIX says that there is none
+const auto kNoConverter = reinterpret_cast<iconv_t>(-1);
+
+/// The one character that some bytes are, as expat takes it; -1 where they are none.
+int character_of(iconv_t converter, const char* bytes, std::size_t count) {
+  std::array<char, 2> in{};
+  std::memcpy(in.data(), bytes, count);
+  std::array<char, 16> out{};
+  char* from = in.data();
+  char* to = out.data();
+  std::size_t left = count, room = out.size();
+  iconv(converter, nullptr, nullptr, nullptr, nullptr);
+  const std::size_t result = iconv(converter, &from, &left, &to, &room);
+  std::uint32_t code = 0;
+  if (result == static_cast<std::size_t>(-1) || left != 0 || room != out.size() - sizeof code) {
+    return -1;
+  }
+  std::memcpy(&code, out.data(), sizeof code);
+  constexpr std::uint32_t kMost = 0xFFFF;  // expat takes no more
+  return code <= kMost ? static_cast<int>(code) : -1;
+}
+
+int XMLCALL convert_pair(void* converter, const char* bytes) {
+  return character_of(static_cast<iconv_t>(converter), bytes, 2);
+}
+
+void XMLCALL release(void* converter) { iconv_close(static_cast<iconv_t>(converter)); }
+
+/// An unknown encoding handler of expat: encodings of one byte a character, as Windows-1252, and of
+/// up to two, as Shift JIS.
+/// @param name  As the XML declaration has it.
+/// @return  XML_STATUS_OK, or XML_STATUS_ERROR where nobody knows it, or it is of another kind.
+int XMLCALL find_xml_encoding(void* /*ignored*/, const XML_Char* name, XML_Encoding* to) {
+  const iconv_t opened = iconv_open("UTF-32LE", name);
+  if (opened == kNoConverter) {
+    return XML_STATUS_ERROR;
+  }
+  Handle<void, &iconv_close> converter(opened);
+  for (int byte = 0; byte < 256; ++byte) {
+    const char text = static_cast<char>(byte);
+    const int character = character_of(opened, &text, 1);
+    // A byte that is no character by itself may be the first half of one. XML is written in ASCII.
+    to->map[byte] = byte < 0x80 ? byte : character >= 0 ? character : -2;
+    if (byte < 0x80 && character != byte && byte >= 0x20 && byte != '\\' && byte != '~') {
+      return XML_STATUS_ERROR;
+    }
+  }
+  to->convert = convert_pair;
+  to->release = release;
+  to->data = converter.release();
+  return XML_STATUS_OK;
+}
 
 constexpr int kDeepest = 64;                       // elements inside of elements
 constexpr int kUnitsDepth = 3;                     // LandXML/Units/Metric
@@ -35,10 +93,6 @@ std::string_view local_name(const XML_Char* name) {
 }
 
 }  // namespace
-
-bool is_surface_named(const std::string& wish, std::string_view name, std::uint64_t number) {
-  return wish.empty() || name == wish || wish == "#" + std::to_string(number);
-}
 
 LandXmlElements::LandXmlElements(ByteReader& in) : in_(in), parser_(XML_ParserCreate(nullptr)) {
   if (!parser_) {
@@ -81,6 +135,23 @@ void LandXmlElements::gather(std::size_t most, const char* too_long) {
   most_text_ = most;
   too_long_ = too_long;
   text_.clear();
+}
+
+void LandXmlElements::end_gathering() {
+  gathering_ = false;
+  std::replace_if(
+      text_.begin(), text_.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  split_words(text_, words_);
+}
+
+bool LandXmlElements::begin_surface(const char** attributes, const std::string& wish) {
+  const std::string name(attribute(attributes, "name"));
+  constexpr std::size_t kMostNames = 400;  // bytes that an error needs
+  if (names_.size() < kMostNames) {
+    names_ += (names_.empty() ? "'" : ", '") + name.substr(0, 60) + "'";
+  }
+  ++surfaces_;
+  return wish.empty() || name == wish || wish == "#" + std::to_string(surfaces_);
 }
 
 std::string LandXmlElements::place() const {

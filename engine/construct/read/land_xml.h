@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <expat.h>
 
@@ -16,12 +17,6 @@
 #include "engine/handle.h"
 
 namespace ptin {
-
-/// A surface that a caller names, among those of a file: by its name, or by its place in the file as
-/// "#2", since several may have one name.
-/// @param number  Number of the surface, from 1.
-[[nodiscard]] bool is_surface_named(const std::string& wish, std::string_view name,
-                                    std::uint64_t number);
 
 /// Reads LandXML as a stream, in any encoding that it names, and hands its elements to a derived
 /// class. A document type declaration is refused, and with it every entity that a file could
@@ -44,7 +39,8 @@ class LandXmlElements {
   /// From here on text is added to text_, which is cleared; until stop_gathering().
   /// @param most  Bytes; more are refused as `too_long` says.
   void gather(std::size_t most, const char* too_long);
-  void stop_gathering() noexcept { gathering_ = false; }
+  /// The words of what was gathered, in words_.
+  void end_gathering();
   [[nodiscard]] bool is_gathering() const noexcept { return gathering_; }
   /// "path:line".
   [[nodiscard]] std::string place() const;
@@ -52,7 +48,13 @@ class LandXmlElements {
   [[nodiscard]] static std::string_view attribute(const char** attributes, std::string_view name);
 
   ByteReader& in_;
+  /// Counts a surface that begins. True where it is the one that `wish` names, by its name or by its
+  /// place in the file as "#2", since several may have one name; or where it names none.
+  [[nodiscard]] bool begin_surface(const char** attributes, const std::string& wish);
+  std::uint64_t surfaces_ = 0;  ///< That began so far.
+  std::string names_;           ///< Those of the first of them, for errors.
   std::string text_;
+  std::vector<std::string_view> words_;
   std::string crs_;           ///< The text for PointStreamFacts::crs, once it was read.
   std::string vertical_crs_;  ///< Likewise.
   DeclaredUnits units_;       ///< Likewise.

@@ -3,10 +3,9 @@
 // LandXML 1.0 to 1.2: Surfaces/Surface/SourceData with Breaklines/Breakline and Boundaries/Boundary,
 // each with a PntList3D: northing, easting and height of one vertex after the other; or a PntList2D,
 // without heights.
-#include "engine/construct/read/land_xml_lines.h"
-
 #include "engine/construct/read/byte_reader.h"
 #include "engine/construct/read/land_xml.h"
+#include "engine/construct/read/line_file.h"
 #include "engine/construct/read/tin_reader.h"
 #include "engine/error.h"
 #include "engine/stop.h"
@@ -32,7 +31,7 @@ class LandXmlLines final : public LandXmlElements {
     if (lines_ == 0) {
       refuse(std::string("there is no ") + element_ + " with a PntList3D or PntList2D in " +
                  (wish_.name.empty() ? "this file" : "the surface '" + wish_.name + "'") +
-                 (surfaces_.empty() ? "" : "; its surfaces are " + surfaces_),
+                 (names_.empty() ? "" : "; its surfaces are " + names_),
              in_.path());
     }
     if (outer_ == 0 && voids_ > 0) {
@@ -47,12 +46,7 @@ class LandXmlLines final : public LandXmlElements {
  private:
   void start_element(std::string_view name, const char** attributes) override {
     if (name == "Surface") {
-      const std::string surface(attribute(attributes, "name"));
-      constexpr std::size_t kMostNames = 400;  // bytes that an error needs
-      if (surfaces_.size() < kMostNames) {
-        surfaces_ += (surfaces_.empty() ? "'" : ", '") + surface.substr(0, 60) + "'";
-      }
-      is_wanted_ = is_surface_named(wish_.name, surface, ++number_);
+      is_wanted_ = begin_surface(attributes, wish_.name);
       lines_of_surface_ = 0;
     } else if (name == element_) {
       in_line_ = is_wanted_;
@@ -71,7 +65,7 @@ class LandXmlLines final : public LandXmlElements {
     } else if (name == element_) {
       in_line_ = false;
     } else if (is_gathering() && (name == "PntList3D" || name == "PntList2D")) {
-      stop_gathering();
+      end_gathering();
       end_line();
     }
   }
@@ -96,15 +90,9 @@ class LandXmlLines final : public LandXmlElements {
   void end_line() {
     stop_if_asked(stop_, "reading", in_.path());
     if (lines_of_surface_++ == 0 && lines_ > 0) {
-      refuse_here("several surfaces have such lines, " + surfaces_ + "; name one with " +
+      refuse_here("several surfaces have such lines, " + names_ + "; name one with " +
                   wish_.option + ", or by its place as '#2'");
     }
-    for (char& c : text_) {
-      if (c == '\n' || c == '\r') {
-        c = ' ';
-      }
-    }
-    split_words(text_, words_);
     const std::size_t n = numbers_of_vertex_;
     if (words_.empty() || words_.size() % n != 0) {
       refuse_here("a PntList" + std::to_string(n) + "D has " + std::to_string(words_.size()) +
@@ -134,12 +122,9 @@ class LandXmlLines final : public LandXmlElements {
   std::stop_token stop_;
   bool is_wanted_ = false, in_line_ = false;
   std::uint64_t lines_ = 0, lines_of_surface_ = 0;
-  std::uint64_t number_ = 0;             ///< The number of the surface, from 1.
   std::uint64_t outer_ = 0, voids_ = 0;  ///< Boundaries by their type.
   std::size_t numbers_of_vertex_ = 3;
   bool is_flat_ = false;
-  std::string surfaces_;
-  std::vector<std::string_view> words_;
   std::vector<SourcePoint> vertices_;
 };
 

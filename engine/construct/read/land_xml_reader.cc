@@ -59,22 +59,16 @@ class LandXml final : public LandXmlElements {
     } else if (name == "Faces") {
       in_faces_ = false;
     } else if (is_gathering() && name == "P") {
-      stop_gathering();
+      end_gathering();
       end_point();
     } else if (is_gathering() && name == "F") {
-      stop_gathering();
+      end_gathering();
       end_face();
     }
   }
 
   void start_surface(const char** attributes) {
-    const std::string name(attribute(attributes, "name"));
-    ++surfaces_;
-    constexpr std::size_t kMostNames = 400;  // bytes that an error needs
-    if (names_.size() < kMostNames) {
-      names_ += (names_.empty() ? "'" : ", '") + name.substr(0, 60) + "'";
-    }
-    in_surface_ = is_surface_named(reading_.surface, name, surfaces_);
+    in_surface_ = begin_surface(attributes, reading_.surface);
     has_surface_ = has_surface_ || in_surface_;
     state_ = attribute(attributes, "state");
   }
@@ -101,17 +95,7 @@ class LandXml final : public LandXmlElements {
     }
   }
 
-  void split_text() {
-    for (char& c : text_) {
-      if (c == '\n' || c == '\r') {
-        c = ' ';
-      }
-    }
-    split_words(text_, words_);
-  }
-
   void end_point() {
-    split_text();
     if (words_.empty() && !reference_.empty()) {
       refuse_here("this P has no coordinates but the name of a point, '" +
                   reference_.substr(0, 60) +
@@ -142,7 +126,6 @@ class LandXml final : public LandXmlElements {
   }
 
   void end_face() {
-    split_text();
     if (words_.size() != 3 && words_.size() != 4) {
       TinReceiver::refuse_corners(words_.size(), place());
     }
@@ -183,11 +166,9 @@ class LandXml final : public LandXmlElements {
   bool has_surface_ = false, in_surface_ = false, in_definition_ = false, in_points_ = false,
        in_faces_ = false;
   bool is_hidden_ = false, are_numbered_ = false;
-  std::uint64_t surfaces_ = 0;    ///< Surfaces that began so far.
   std::uint64_t read_ = 0;        ///< The number of the surface that is read; 0: none yet.
   std::uint64_t boundaries_ = 0;  ///< Boundaries of that surface, in its source data.
-  std::string id_, reference_, state_, names_;
-  std::vector<std::string_view> words_;
+  std::string id_, reference_, state_;
 };
 
 }  // namespace

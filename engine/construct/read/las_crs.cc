@@ -1,15 +1,143 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/read/las_crs.h"
 
+#include <algorithm>
+#include <cstring>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/construct/grid/crs.h"
 
 namespace ptin {
 
 namespace {
+
+using Bytes = std::vector<unsigned char>;
+
+constexpr std::uint64_t kMostRecords = 65536;  // that are looked at
+constexpr std::uint64_t kMostCrsBytes = std::uint64_t{1} << 24;
+
+constexpr std::uint16_t kMathTransform = 2111, kWkt = 2112;
+constexpr std::uint16_t kKeys = 34735, kDoubles = 34736, kText = 34737;
+
+/// The records of a LAS file that state its CRS.
+struct LasRecords {
+  /// The texts that are not empty, in the order of the file; those that the library libLAS wrote under
+  /// its own name where there are no others.
+  std::vector<std::string> wkt;
+  GeoTiffKeys keys;  ///< The last of each kind of record.
+  bool has_math_transform = false;
+  std::vector<SourceWarning> warnings;  ///< About records that are not there; they name no file.
+};
+
+/// Where records lie, and what the header says of them.
+struct RecordPlace {
+  std::uint64_t begin = 0, end = 0;  ///< Bytes of the file.
+  std::uint64_t count = 0;
+  bool extended = false;  ///< Records have lengths of 64 bits.
+};
+
+std::string_view text_of(std::span<const unsigned char> bytes) {
+  const std::string_view all(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return all.substr(0, all.find('\0'));
+}
+
+void take_wkt(const Bytes& content, LasRecords& records) {
+  const std::string_view text = text_of(content);
+  if (text.find_first_not_of(" \t\r\n") != std::string_view::npos) {
+    records.wkt.emplace_back(text);
+  }
+}
+
+/// Reads the content of a record if it is about the CRS.
+/// @param id  The number of the record among those of the projection.
+void take_record(const LasFile& file, std::uint16_t id, std::uint64_t at, std::uint64_t bytes,
+                 LasRecords& records) {
+  records.has_math_transform = records.has_math_transform || id == kMathTransform;
+  const bool is_wanted = id == kWkt || id == kKeys || id == kDoubles || id == kText;
+  if (!is_wanted || bytes > kMostCrsBytes) {
+    return;
+  }
+  Bytes content(bytes);
+  file.read(at, content);
+  switch (id) {
+    case kWkt:
+      take_wkt(content, records);
+      break;
+    case kKeys:
+      records.keys.directory = std::move(content);
+      break;
+    case kDoubles:
+      records.keys.doubles = std::move(content);
+      break;
+    default:
+      records.keys.text = std::move(content);
+      break;
+  }
+}
+
+/// Walks records; returns how many there are before place.end.
+/// @param of_liblas  Receives texts under the name of that library, of which others know nothing.
+std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& records,
+                   LasRecords& of_liblas) {
+  const std::uint64_t head_bytes = place.extended ? 60 : 54;
+  Bytes head(head_bytes);
+  std::uint64_t at = place.begin;
+  for (std::uint64_t i = 0; i < std::min(place.count, kMostRecords); ++i) {
+    if (at > place.end || head_bytes > place.end - at) {
+      return i;
+    }
+    file.read(at, head);
+    at += head_bytes;
+    const std::uint64_t bytes =
+        place.extended ? las_value<std::uint64_t>(head, 20) : las_value<std::uint16_t>(head, 20);
+    if (bytes > place.end - at) {
+      return i;
+    }
+    const std::string_view user = text_of(std::span(head).subspan(2, 16));
+    const auto id = las_value<std::uint16_t>(head, 18);
+    if (user == "LASF_Projection") {
+      take_record(file, id, at, bytes, records);
+    } else if (user == "liblas" && id == kWkt) {
+      take_record(file, id, at, bytes, of_liblas);
+    }
+    at += bytes;
+  }
+  return place.count;
+}
+
+void walk_all(const LasFile& file, const RecordPlace& place, const char* where, LasRecords& records,
+              LasRecords& of_liblas) {
+  const std::uint64_t there = walk(file, place, records, of_liblas);
+  if (there < place.count) {
+    records.warnings.push_back({"las_records",
+                                "the header counts " + std::to_string(place.count) + " records " +
+                                    where + ", and " + std::to_string(there) +
+                                    " are there; what the others may declare is not known",
+                                ""});
+  }
+}
+
+/// Looks at the header of each record, and reads those that are about the CRS. Records end where the
+/// points begin, those behind the points with the file, whatever the header counts.
+LasRecords read_las_records(const LasFile& file, const LasHeader& header) {
+  LasRecords records, of_liblas;
+  const std::uint64_t points_begin = std::min(header.first_point, file.bytes());
+  walk_all(file, {header.header_bytes, points_begin, header.records, false}, "before the points",
+           records, of_liblas);
+  if (header.extended_records > 0) {
+    walk_all(file, {header.first_extended, file.bytes(), header.extended_records, true},
+             "behind the points", records, of_liblas);
+  }
+  if (records.wkt.empty()) {
+    records.wkt = std::move(of_liblas.wkt);
+  }
+  return records;
+}
 
 /// The last text that is understood; else the last one, as it is.
 DeclaredCrs crs_of_texts(const LasRecords& records) {
@@ -60,8 +188,7 @@ bool complete_heights(DeclaredCrs& declared, const DeclaredCrs& other) {
   return unit_of_other != "unknown" && unit_of_other != unit;
 }
 
-}  // namespace
-
+/// The CRS that the records declare, as declared_by_las() says.
 DeclaredCrs crs_of_records(const LasRecords& records, bool is_wkt) {
   DeclaredCrs text = crs_of_texts(records);
   if (records.keys.directory.empty()) {
@@ -96,6 +223,23 @@ DeclaredCrs crs_of_records(const LasRecords& records, bool is_wkt) {
                               ""});
   }
   return first;
+}
+
+}  // namespace
+
+DeclaredCrs declared_by_las(const LasFile& file, const LasHeader& header) {
+  LasRecords records = read_las_records(file, header);
+  DeclaredCrs declared = crs_of_records(records, header.crs_is_wkt);
+  std::swap(declared.warnings, records.warnings);
+  std::move(records.warnings.begin(), records.warnings.end(),
+            std::back_inserter(declared.warnings));
+  if (records.has_math_transform) {
+    declared.warnings.push_back(
+        {"las_math_transform",
+         "it declares a transformation of its coordinates (record 2111), which is not applied",
+         ""});
+  }
+  return declared;
 }
 
 }  // namespace ptin

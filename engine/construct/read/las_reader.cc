@@ -9,7 +9,6 @@
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/las_crs.h"
 #include "engine/construct/read/las_file.h"
-#include "engine/construct/read/las_records.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -99,16 +98,13 @@ LasReader::~LasReader() = default;
 
 /// Reads what the records declare, and warns of a header that does not fit its file.
 void LasReader::read_declarations() {
-  const LasRecords records = read_las_records(*file_, header_);
-  DeclaredCrs declared = crs_of_records(records, header_.crs_is_wkt);
+  DeclaredCrs declared = declared_by_las(*file_, header_);
   facts_.crs = std::move(declared.crs);
   facts_.vertical_crs = std::move(declared.vertical_crs);
   facts_.units = std::move(declared.units);
-  warn(records.warnings);
-  warn(declared.warnings);
-  if (records.has_math_transform) {
-    warn("las_math_transform",
-         "it declares a transformation of its coordinates (record 2111), which is not applied");
+  for (SourceWarning& warning : declared.warnings) {
+    warning.file = path_;
+    warnings_.add(std::move(warning));
   }
   if (header_.returns_are_made_up && returns_ != ReturnChoice::kAll) {
     warn("las_returns",
@@ -140,8 +136,8 @@ void LasReader::check_counts() {
   }
 }
 
-void LasReader::warn(const char* kind, std::string message, std::uint64_t count) {
-  warnings_.add({kind, std::move(message), path_, "", 0, count});
+void LasReader::warn(const char* kind, std::string message) {
+  warnings_.add({kind, std::move(message), path_});
 }
 
 SourceWarnings LasReader::warnings() const {
@@ -184,13 +180,6 @@ void LasReader::look_at(const unsigned char* record) {
       is_out = is_out || steps < low_[i] || steps > high_[i];
     }
     out_of_box_ += is_out ? 1 : 0;
-  }
-}
-
-void LasReader::warn(const std::vector<SourceWarning>& warnings) {
-  for (SourceWarning warning : warnings) {
-    warning.file = path_;
-    warnings_.add(std::move(warning));
   }
 }
 

@@ -48,7 +48,7 @@ struct LasHeader {
 /// LAS coordinates are whole numbers of steps (`scale`) from an offset. Where the steps of x and y
 /// are powers of ten, and their offsets whole numbers of steps, points are exact decimals and
 /// facts() declares their digits. Otherwise facts() declares a lattice: the smaller of the two
-/// steps as its unit, and the offsets. The CRS is that of crs_of_records() (read/las_crs.h).
+/// steps as its unit, and the offsets. The CRS is that of declared_by_las() (read/las_crs.h).
 class LasReader final : public PointStream {
  public:
   /// @throws Error  not_found, io_error    the file cannot be opened or read
@@ -85,8 +85,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] Axis make_axis(std::size_t i, bool powers_of_ten_only) const;
   void set_lattice();
   void read_declarations();
-  void warn(const std::vector<SourceWarning>& warnings);
-  void warn(const char* kind, std::string message, std::uint64_t count = 0);
+  void warn(const char* kind, std::string message);
   void check_counts();
   void look_at(const unsigned char* record);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;

@@ -13,7 +13,6 @@
 #include "engine/construct/grid/dataset_crs.h"
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/hidden_features.h"
-#include "engine/construct/read/land_xml_lines.h"
 #include "engine/construct/read/tin_file.h"
 #include "engine/error.h"
 #include "engine/stop.h"

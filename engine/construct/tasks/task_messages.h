@@ -16,8 +16,8 @@ class TaskSchedule;
 /// What processes that do tasks must know of a build, beside its inputs and options.
 struct BuildNote {
   nlohmann::json
-      index;  ///< Of the source, as take_up_source() takes it; null while it is being read.
-  std::string folder;     ///< The build's, with the file of pages; "" where there is none yet.
+      index;           ///< The source's, as take_up_source() takes it; null while it is being read.
+  std::string folder;  ///< The build's, with the file of pages; "" where there is none yet.
   std::string temporary;  ///< The folder of its temporary files; likewise.
   nlohmann::json inputs;  ///< Names, sizes and times of the inputs, which must be the same for all.
 };

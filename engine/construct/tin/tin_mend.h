@@ -17,10 +17,10 @@ class PointOrder;
 /// A mesh on disk. Its triangles are counter-clockwise but for slivers and faults.
 struct MeshOnDisk {
   RecordFile<GridTriangle> triangles;  ///< Ascending.
-  RecordFile<std::uint64_t> places;    ///< Of their vertices along the curve, ascending.
+  RecordFile<std::uint64_t> places;    ///< Places of their vertices along the curve, ascending.
 };
 
-/// Flips slivers away (tin/sliver_flips.h). The triangles around them are taken into memory as a
+/// Flips slivers away. The triangles around them are taken into memory as a
 /// patch, which grows until no flip leaves it, and which then replaces its former triangles on
 /// disk. Vertices that lose all their triangles go.
 /// @param slivers  Triangles of `mesh` that snapping spoiled.

@@ -41,7 +41,7 @@ struct TinCounts {
 ///
 /// The grid is chosen as that of points (points/point_source.h): digits for which it has no room are
 /// dropped, and largest_shift_plan says how far that moved vertices. Vertices that share a position and a height
-/// are one. Slivers that snapping flattens or turns over are flipped away (tin/sliver_flips.h).
+/// are one. Slivers that snapping flattens or turns over are flipped away (tin/tin_mend.h).
 /// Concave borders and holes are filled with void triangles up to the convex hull.
 ///
 /// Threads: const members from any number at once.

@@ -2,7 +2,6 @@
 #include "engine/query/heights/class_changes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -31,8 +30,7 @@ struct GridReach {
 
 std::int32_t steps_above(double map_units, double step) {
   if (!(map_units >= 0.0)) {
-    throw Error(ErrorCode::invalid_argument, "the reach of a border must not be negative",
-                std::to_string(map_units));
+    refuse("the reach of a border must not be negative", std::to_string(map_units));
   }
   const double steps = std::ceil(map_units / step) + 1.0;
   return steps < double{kGridMax} ? static_cast<std::int32_t>(steps) : kGridMax;
@@ -178,11 +176,7 @@ class ChangeCount {
 }  // namespace
 
 ClassChanges class_changes(const OpenedTerrain& terrain, const ClassChangesRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  ClassChanges changes = ChangeCount(terrain, request).run();
-  changes.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return changes;
+  return timed([&] { return ChangeCount(terrain, request).run(); });
 }
 
 }  // namespace ptin

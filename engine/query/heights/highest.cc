@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -53,9 +52,9 @@ class HighestSearch final : private BestStarVisitor {
       filter_.box = region_->bounds();
       if (!std::holds_alternative<Window>(*request.region) &&
           !std::holds_alternative<Polygon>(*request.region)) {
-        throw Error(ErrorCode::invalid_argument,
-                    "the highest point is that of a window or a polygon; a point or a segment has "
-                    "no inside");
+        refuse(
+            "the highest point is that of a window or a polygon; a point or a segment has no "
+            "inside");
       }
       border_.emplace(*request.region, facts_.map, facts_.bounds);
     }
@@ -85,7 +84,7 @@ class HighestSearch final : private BestStarVisitor {
  private:
   static const HighestRequest& checked(const HighestRequest& request) {
     if (request.listed == 0) {
-      throw Error(ErrorCode::invalid_argument, "no vertex is asked for: expected at least one");
+      refuse("no vertex is asked for: expected at least one");
     }
     return request;
   }
@@ -231,11 +230,7 @@ class HighestSearch final : private BestStarVisitor {
 }  // namespace
 
 HighestResult highest(const OpenedTerrain& terrain, const HighestRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  HighestResult result = HighestSearch(terrain, request).run();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return HighestSearch(terrain, request).run(); });
 }
 
 }  // namespace ptin

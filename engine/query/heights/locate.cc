@@ -26,7 +26,7 @@ LocatedPoint answer_of(const TriangleAt& at, Spot spot, const Detail& detail,
   point.state = t.is_void ? PointState::kVoid : PointState::kSurface;
   if (!t.is_void) {
     point.height = facts.heights.height_of_code(codes_in(t, facts.heights, spot).mean());
-    set_interval(bounds_at({t.deviation, t.heights}, detail), facts, point);
+    set_interval(bounds_at({t.deviation, t.heights}, detail), !detail.is_asked(), facts, point);
   }
   begin_with_least(point.triangle);
   return point;

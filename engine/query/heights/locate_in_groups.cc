@@ -32,11 +32,10 @@ std::vector<PointOnCurve> along_the_curve(std::span<const MapPoint> points, cons
       context.check_stop();
     }
     if (!std::isfinite(points[i].x) || !std::isfinite(points[i].y)) {
-      throw Error(ErrorCode::invalid_argument,
-                  "point " + std::to_string(i) +
-                      " has a coordinate that is not a finite number: give map units of the "
-                      "terrain's CRS",
-                  store.path());
+      refuse(
+          "point " + std::to_string(i) +
+              " has a coordinate that is not a finite number: give map units of the terrain's CRS",
+          store.path());
     }
     const std::optional<Spot> spot = map.spot(points[i]);
     if (spot && contains(facts.bounds, *spot)) {  // other points keep the state kOutside
@@ -76,8 +75,7 @@ LocateResult locate_in_groups(const OpenedTerrain& terrain, std::span<const MapP
   result.certified_deviation = detail.certificate().deviation;
   result.exact = detail.is_exact(store.facts());
   result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cost.seconds = seconds_since(start);
   return result;
 }
 

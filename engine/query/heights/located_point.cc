@@ -8,6 +8,13 @@
 #include "engine/geometry/infinity.h"
 
 namespace ptin {
+namespace {
+
+bool is_level(const std::array<LocatedPoint::Corner, 3>& triangle) noexcept {
+  return triangle[0].height == triangle[1].height && triangle[1].height == triangle[2].height;
+}
+
+}  // namespace
 
 void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle) {
   const auto least =
@@ -49,9 +56,12 @@ SurfaceBounds bounds_at(const SurfaceBounds& of_triangle, const Detail& detail) 
   return {std::min(of_triangle.deviation, detail.certificate().deviation), of_triangle.heights};
 }
 
-void set_interval(const SurfaceBounds& bounds, const StoreFacts& facts, LocatedPoint& point) {
+void set_interval(const SurfaceBounds& bounds, bool is_full, const StoreFacts& facts,
+                  LocatedPoint& point) {
   const double deviation = std::max(bounds.deviation, facts.base_deviation);
-  if (deviation == 0) {
+  // A triangle of another level in the same plane rounds the height of a point its own way, but for
+  // one that is level: the height of its corners.
+  if (deviation == 0 && (is_full || is_level(point.triangle))) {
     point.height_min = point.height_max = point.height;
     return;
   }

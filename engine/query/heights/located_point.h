@@ -29,7 +29,9 @@ void begin_with_least(std::array<LocatedPoint::Corner, 3>& triangle);
 /// Sets the interval that holds the full surface at a point: the height plus and minus the
 /// triangle's deviation (at least the file's base), widened by the rounding of the height, and cut
 /// to the heights of the full surface below the triangle.
+/// @param is_full  The point is one of the full TIN, so that its height is the very same double.
 /// REQUIRES: the state of the point is surface.
-void set_interval(const SurfaceBounds& bounds, const StoreFacts& facts, LocatedPoint& point);
+void set_interval(const SurfaceBounds& bounds, bool is_full, const StoreFacts& facts,
+                  LocatedPoint& point);
 
 }  // namespace ptin

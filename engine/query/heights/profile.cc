@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -127,7 +126,7 @@ class Profiling {
           {hilbert_position(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)), i});
     }
     if (!lines.empty() && order.empty()) {
-      throw Error(ErrorCode::invalid_argument, no_length(lines.size()));
+      refuse(no_length(lines.size()));
     }
     station_bytes_ = stations.bytes_within(request_.limits.memory_bytes);
     std::sort(order.begin(), order.end(), [](const OrderedLine& a, const OrderedLine& b) {
@@ -249,11 +248,7 @@ class Profiling {
 ProfileResult profile_of(const OpenedTerrain& terrain,
                          std::span<const std::span<const MapPoint>> lines,
                          const ProfileRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
-  ProfileResult result = Profiling(terrain, request).run(lines);
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return Profiling(terrain, request).run(lines); });
 }
 
 }  // namespace

@@ -45,9 +45,8 @@ SpotLine spot_line(std::span<const MapPoint> line, std::size_t number, std::size
   for (const MapPoint& p : line) {
     const std::optional<Spot> spot = map.spot(p);
     if (!spot) {
-      throw Error(ErrorCode::invalid_argument,
-                  "a point of " + name_of_line(number, count) +
-                      " lies too far from the terrain: give map units of its CRS");
+      refuse("a point of " + name_of_line(number, count) +
+             " lies too far from the terrain: give map units of its CRS");
     }
     if (!made.spots.empty() && made.spots.back() == *spot) {
       continue;

@@ -41,7 +41,7 @@ class RegionBorder {
                   std::vector<ValuedPlace>& ends) const;
 
   PolygonSides sides_;
-  std::optional<PolygonSides::Side> place_;  ///< Of a region that is a single place, without sides.
+  std::optional<PolygonSides::Side> place_;  ///< The whole region, where it is one place.
 };
 
 }  // namespace ptin

@@ -2,7 +2,6 @@
 #include "engine/query/isoline/isoline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <span>
 #include <utility>
@@ -59,8 +58,7 @@ class IsolineExtraction {
         return sides.clip(line);
       };
     } else {
-      throw Error(ErrorCode::invalid_argument,
-                  "isolines are cut at a window or a polygon; a point or a segment has no inside");
+      refuse("isolines are cut at a window or a polygon; a point or a segment has no inside");
     }
   }
 
@@ -184,11 +182,7 @@ Isoline Isolines::line(std::size_t i, std::vector<MapPoint>& points) const {
 
 Isolines extract_isolines(const OpenedTerrain& terrain, const IsolineRequest& request,
                           const TraceTerrain& trace) {
-  const auto start = std::chrono::steady_clock::now();
-  Isolines result = IsolineExtraction(terrain, request).run(trace);
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return IsolineExtraction(terrain, request).run(trace); });
 }
 
 Isolines isolines(const OpenedTerrain& terrain, const IsolineRequest& request) {

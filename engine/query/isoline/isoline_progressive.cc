@@ -163,7 +163,7 @@ Isolines ProgressiveIsolines::lines(const Tin& tin, const QueryContext& context)
   LineTracer tracer(levels_, heights_, map_, context);
   tracer.begin({}, UINT64_MAX);
   for (TriangleId t = 0; t < first_.size(); ++t) {
-    if (first_[t] != kNone && !tracer.add(tin, t)) {
+    if (first_[t] != kNone && !tracer.add(living_triangle(tin, t))) {
       refuse_more_pieces();
     }
   }

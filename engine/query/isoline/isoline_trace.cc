@@ -62,16 +62,6 @@ bool LineTracer::add(const LivingTriangle& t) {
   return add_star(star, ring);
 }
 
-bool LineTracer::add(const Tin& tin, TriangleId t) {
-  LivingTriangle triangle;
-  triangle.is_void = tin.classes[t] == TriangleClass::kVoid;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vertex& v = tin.vertices[tin.triangles[t].v[i]];
-    triangle.corner[i] = {v.position, v.height, true};
-  }
-  return add(triangle);
-}
-
 /// Adds the triangles of a star whose centre has a height.
 bool LineTracer::add_star(const LivingStar& star, std::span<const LivingCorner> ring) {
   centre_ = corner_of(star.u, star.height);

@@ -12,7 +12,6 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/key_table.h"
-#include "engine/mesh/tin.h"
 #include "engine/query/isoline/isoline_chains.h"
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
@@ -64,8 +63,6 @@ class LineTracer {
   /// Cost: linear in the corners, and in the segments.
   [[nodiscard]] bool add(const LivingStars& stars);
   [[nodiscard]] bool add(const LivingTriangle& t);
-  /// A triangle of a mesh that is alive.
-  [[nodiscard]] bool add(const Tin& tin, TriangleId t);
 
   /// Joins what was added: pieces that end where the triangles do, and rings. May be called once; what
   /// it returns is kept until begin() is called.

@@ -12,6 +12,7 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/infinity.h"
 #include "engine/geometry/interval.h"
+#include "engine/mesh/tin.h"
 #include "engine/query/living/living_stars.h"
 #include "storage/coarsest_tin.h"
 
@@ -36,6 +37,17 @@ struct LivingTriangle {
 
 [[nodiscard]] inline GridBox box_of(const LivingTriangle& t) noexcept {
   return united(united(box_of(t.corner[0].position), t.corner[1].position), t.corner[2].position);
+}
+
+/// A triangle of a mesh, of whose maker nothing is known.
+[[nodiscard]] inline LivingTriangle living_triangle(const Tin& tin, TriangleId t) {
+  LivingTriangle triangle;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const VertexId v = tin.triangles[t].v[i];
+    triangle.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
+  }
+  triangle.is_void = tin.classes[t] == TriangleClass::kVoid;
+  return triangle;
 }
 
 /// Calls visit(const LivingTriangle&) for each triangle that lives and whose box is wanted:

@@ -31,4 +31,17 @@ class LivingVisitor {
   virtual void take(const LivingTriangle& t) = 0;
 };
 
+/// A visitor made of two functions, begin() and take().
+template <class Begin, class Take>
+class VisitorOf final : public LivingVisitor {
+ public:
+  VisitorOf(const Begin& begin, const Take& take) : begin_(begin), take_(take) {}
+  bool begin(std::size_t most_triangles) override { return begin_(most_triangles); }
+  void take(const LivingTriangle& t) override { take_(t); }
+
+ private:
+  Begin begin_;
+  Take take_;
+};
+
 }  // namespace ptin

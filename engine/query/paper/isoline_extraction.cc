@@ -41,7 +41,8 @@ TileTraces trace(const OpenedTerrain& terrain, const TileTraceRequest& asked,
   tracer.begin({facts.bounds, asked.region, asked.counts_vertices},
                context.left_beside(mesh.bytes()));
   for (TriangleId t = 0; t < mesh.tin().triangles.size(); ++t) {
-    if (!tracer.add(mesh.tin(), t)) {  // there is no room, or more points than 32 bits number
+    if (!tracer.add(living_triangle(mesh.tin(), t))) {
+      // There is no room, or more points than 32 bits number.
       context.admit(std::max(mesh.bytes() + tracer.bytes_wanted(), asked.tiles.memory_bytes + 1));
     }
   }

@@ -32,7 +32,7 @@ void walk(const PointGroup& group, const SelectiveRefinement& mesh, const StoreF
     point = located_at(mesh.tin(), facts.heights, p.spot, place);
     if (point.state == PointState::kSurface) {
       const TriangleId t = answering_triangle(mesh.tin(), place);
-      set_interval(bounds_at(mesh.bounds(t), group.detail), facts, point);
+      set_interval(bounds_at(mesh.bounds(t), group.detail), !group.detail.is_asked(), facts, point);
     }
   }
 }

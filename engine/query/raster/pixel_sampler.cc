@@ -90,17 +90,6 @@ void PixelSampler<Height>::add(const LivingTriangle& t, std::uint32_t label) {
 }
 
 template <class Height>
-void PixelSampler<Height>::add(const Tin& tin, TriangleId t, std::uint32_t label) {
-  LivingTriangle triangle;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    triangle.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
-  }
-  triangle.is_void = tin.classes[t] == TriangleClass::kVoid;
-  add(triangle, label);
-}
-
-template <class Height>
 void PixelSampler<Height>::add_void(const LivingTriangle& t) {
   for_centres_in(centres_, t, [&](std::size_t place, Spot, const std::array<Int128, 3>&) {
     if (buffers_.states[place] == PointState::kOutside) buffers_.states[place] = PointState::kVoid;

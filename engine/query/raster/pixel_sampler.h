@@ -18,7 +18,7 @@ template <class Height>
 struct PixelBuffers {
   std::span<Height> heights;          ///< Height's unit; NaN without surface.
   std::span<PointState> states{};     ///< What the centre lies on.
-  std::span<std::uint32_t> labels{};  ///< Of a surface triangle that holds the centre; else kNone.
+  std::span<std::uint32_t> labels{};  ///< A surface triangle that holds the centre; else kNone.
 };
 
 /// Samples a TIN at the centres of pixels. What it writes does not depend on the order of the
@@ -34,7 +34,6 @@ class PixelSampler {
 
   /// Adds a triangle of the TIN. Cost: the pixels below it.
   void add(const LivingTriangle& t, std::uint32_t label = 0);
-  void add(const Tin& tin, TriangleId t, std::uint32_t label = 0);
 
  private:
   void add_void(const LivingTriangle& t);

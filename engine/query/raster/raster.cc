@@ -2,7 +2,6 @@
 #include "engine/query/raster/raster.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -28,42 +27,37 @@ constexpr double kRecordsOfPixel = 128;
 constexpr std::uint64_t kLocatedTogether = 4096;
 constexpr std::int64_t kMostSide = INT32_MAX;
 
-[[noreturn]] void refuse(const std::string& what, const OpenedTerrain& terrain) {
-  throw Error(ErrorCode::invalid_argument, what, terrain.store().path());
-}
-
-void check(const OpenedTerrain& terrain, const RasterRequest& request) {
+void check(const std::string& file, const RasterRequest& request) {
   for (const double number : {request.lattice.origin.x, request.lattice.origin.y,
                               request.lattice.step_x, request.lattice.step_y}) {
     if (!std::isfinite(number)) {
-      refuse("the raster's origin or step is not a finite number: give map units", terrain);
+      refuse("the raster's origin or step is not a finite number: give map units", file);
     }
   }
   if (request.lattice.step_x == 0 || request.lattice.step_y == 0) {
     refuse("the raster's step is 0: give the distance between the centres of pixels, map units",
-           terrain);
+           file);
   }
   const PixelRect& p = request.pixels;
   if (p.width < 1 || p.height < 1 || p.width > kMostSide || p.height > kMostSide) {
     refuse("the raster has " + std::to_string(p.width) + " x " + std::to_string(p.height) +
                " pixels: give from 1 to 2^31 - 1 columns and rows",
-           terrain);
+           file);
   }
   constexpr std::int64_t kMostIndex = std::int64_t{1} << 53;  // beyond it centres fall together
   if (std::max(p.column, p.row) > kMostIndex || std::min(p.column, p.row) < -kMostIndex) {
     refuse("the raster begins at column " + std::to_string(p.column) + " and row " +
                std::to_string(p.row) + ": give numbers from -2^53 to 2^53",
-           terrain);
+           file);
   }
   if (request.block_width < 1 || request.block_height < 1) {
-    refuse("a block of the raster has no pixel: give sides of at least 1", terrain);
+    refuse("a block of the raster has no pixel: give sides of at least 1", file);
   }
   if (!(request.lattice.margin.x >= 0 && request.lattice.margin.y >= 0)) {
-    refuse("the raster's margin is negative or not a number: give map units >= 0", terrain);
+    refuse("the raster's margin is negative or not a number: give map units >= 0", file);
   }
   if (request.as_fine_as_pixels && (request.detail.tolerance || request.detail.vertices)) {
-    refuse("both a level of detail and one as fine as the pixels are asked for: ask for one",
-           terrain);
+    refuse("both a level of detail and one as fine as the pixels are asked for: ask for one", file);
   }
 }
 
@@ -90,7 +84,7 @@ class RasterReading {
   RasterReading(const OpenedTerrain& terrain, const RasterRequest& request)
       : terrain_(terrain),
         facts_(terrain.store().facts()),
-        request_((check(terrain, request), request)),
+        request_((check(terrain.store().path(), request), request)),
         context_(request.limits, terrain.store().path()),
         asked_(detail_of(terrain, request, context_)),
         detail_(asked_, terrain.record_source(), context_),
@@ -136,9 +130,6 @@ class RasterReading {
   }
   /// What a centre lies on is told by whether it has a height.
   [[nodiscard]] bool asks_surface() const noexcept { return request_.heights || request_.states; }
-
-  class Sampling;
-  class Gathering;
 
   const OpenedTerrain& terrain_;
   const StoreFacts& facts_;
@@ -223,39 +214,6 @@ void RasterReading::tell_progress(std::int64_t more_pixels) {
   }
 }
 
-/// Takes the triangles of a place, and tells of progress with each page.
-class RasterReading::Sampling : public LivingVisitor {
- public:
-  Sampling(RasterReading& reading, PixelSampler<double>& sampler)
-      : reading_(reading), sampler_(sampler) {}
-  bool begin(std::size_t /*most_triangles*/) override {
-    reading_.tell_progress(0);
-    return true;
-  }
-  void take(const LivingTriangle& t) override { sampler_.add(t); }
-
- private:
-  RasterReading& reading_;
-  PixelSampler<double>& sampler_;
-};
-
-/// Gathers the triangles of normals, as far as memory allows.
-class RasterReading::Gathering : public LivingVisitor {
- public:
-  Gathering(RasterReading& reading, PixelNormals& normals, std::uint64_t most_bytes)
-      : reading_(reading), normals_(normals), most_bytes_(most_bytes) {}
-  bool begin(std::size_t most_triangles) override {
-    reading_.tell_progress(0);
-    return normals_.bytes_with(most_triangles) <= most_bytes_;
-  }
-  void take(const LivingTriangle& t) override { normals_.add(t); }
-
- private:
-  RasterReading& reading_;
-  PixelNormals& normals_;
-  std::uint64_t most_bytes_;
-};
-
 void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers) {
   const PixelCentres centres(facts_, request_.lattice, pixels);
   PixelSampler<double> sampler(facts_, centres, buffers);
@@ -263,7 +221,12 @@ void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers
     if (is_sparse(centres)) {
       locate(centres, buffers);
     } else {
-      Sampling sampling(*this, sampler);
+      VisitorOf sampling(
+          [&](std::size_t /*most_triangles*/) {
+            tell_progress(0);
+            return true;
+          },
+          [&](const LivingTriangle& t) { sampler.add(t); });
       LivingPlace place;
       place.box = centres.box();
       reader_.read(place, context_, sampling);
@@ -327,7 +290,13 @@ bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
   const PixelCentres centres(facts_, request_.lattice, part);
   if (!meets(centres.box(), facts_.bounds)) return true;
   PixelNormals normals(facts_, centres);
-  Gathering gathering(*this, normals, context_.left_beside(0));
+  const std::uint64_t most_bytes = context_.left_beside(0);
+  VisitorOf gathering(
+      [&](std::size_t most_triangles) {
+        tell_progress(0);
+        return normals.bytes_with(most_triangles) <= most_bytes;
+      },
+      [&](const LivingTriangle& t) { normals.add(t); });
   LivingPlace place;
   place.box = centres.box();
   if (!reader_.read(place, context_, gathering)) {
@@ -345,27 +314,24 @@ bool RasterReading::sample_normals(const PixelRect& part, const PixelRect& sampl
   return true;
 }
 
-template <class Read>
-RasterResult timed(const OpenedTerrain& terrain, const RasterRequest& request, const Read& read) {
-  const auto start = std::chrono::steady_clock::now();
-  RasterReading reading(terrain, request);
-  read(reading);
-  RasterResult result = reading.result();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
-}
-
 }  // namespace
 
 RasterResult raster(const OpenedTerrain& terrain, const RasterRequest& request,
                     const RasterReceiver& receive) {
-  return timed(terrain, request, [&](RasterReading& reading) { reading.hand_over(receive); });
+  return timed([&] {
+    RasterReading reading(terrain, request);
+    reading.hand_over(receive);
+    return reading.result();
+  });
 }
 
 RasterResult raster(const OpenedTerrain& terrain, const RasterRequest& request,
                     std::span<double> heights, std::span<PointState> states) {
-  return timed(terrain, request, [&](RasterReading& reading) { reading.fill(heights, states); });
+  return timed([&] {
+    RasterReading reading(terrain, request);
+    reading.fill(heights, states);
+    return reading.result();
+  });
 }
 
 }  // namespace ptin

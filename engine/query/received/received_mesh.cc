@@ -36,16 +36,6 @@ class CertifiedSurface final : public BoundedSurface {
   SurfaceBounds bounds_;
 };
 
-LivingTriangle triangle_of(const Tin& tin, TriangleId t) {
-  LivingTriangle made;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    made.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
-  }
-  made.is_void = tin.classes[t] != TriangleClass::kSurface;
-  return made;
-}
-
 Spot end_of(const ReceivedMesh& mesh, MapPoint p) {
   const std::optional<Spot> spot = SpotMap(mesh.facts.map, mesh.facts.bounds).spot(p);
   if (!spot) refuse("an end lies too far from the terrain: give map units of its CRS");
@@ -88,7 +78,8 @@ LocatedPoint locate_on(const ReceivedMesh& mesh, MapPoint at) {
   const Place place = find_spot(mesh.tin, *spot, 0);
   LocatedPoint point = located_at(mesh.tin, mesh.facts.heights, *spot, place);
   if (point.state == PointState::kSurface) {
-    set_interval({mesh.certificate.deviation, {-kInfinity, kInfinity}}, mesh.facts, point);
+    set_interval({mesh.certificate.deviation, {-kInfinity, kInfinity}}, mesh.certificate.complete,
+                 mesh.facts, point);
   }
   return point;
 }
@@ -106,7 +97,7 @@ std::vector<ProfilePoint> profile_on(
   const SpotPath path({{line.spots[0], line.spots[1]}});
   GroundStretches stretches(path, mesh.facts.heights, memory_bytes);
   for (TriangleId t = 0; t < mesh.tin.triangles.size(); ++t) {
-    stretches.take(triangle_of(mesh.tin, t));
+    stretches.take(living_triangle(mesh.tin, t));
     if (!stretches.begin(0)) {
       throw Error(ErrorCode::resource_exhausted,
                   "the line crosses more triangles than the memory holds; take a shorter one");
@@ -139,7 +130,8 @@ SightResult sight_on(const ReceivedMesh& mesh, const SightPair& pair, const Sigh
     result.certified_deviation = is_certain ? 0.0 : mesh.certificate.deviation;
     return result;
   }
-  result.verdict = verdict_of(view);
+  // An end that stands on the mesh may stand in a void of the full TIN, from which nothing is seen.
+  result.verdict = is_certain || request.absolute ? verdict_of(view) : SightVerdict::kUndecided;
   const bool is_measured = measure(view, facts, pair, request.wavelength, result);
   if (result.verdict == SightVerdict::kUndecided) {
     result.certified_deviation = mesh.certificate.deviation;

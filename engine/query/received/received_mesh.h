@@ -44,7 +44,7 @@ struct ReceivedMesh {
     const std::function<double(MapPoint, MapPoint)>& ground_distance, std::uint64_t memory_bytes);
 
 /// Whether one end sees the other. The verdict is certain, or it is undecided: what the mesh leaves
-/// out counts below both ends, too.
+/// out counts below both ends, too, and so do voids that may be there.
 /// @param request  Heights, curvature, distance and wavelength count; detail, budget and limits do
 ///                 not.
 /// @throws Error invalid_argument  as SightSolver::solve(); both ends at one place

@@ -38,14 +38,13 @@ MovingWindow::MovingWindow(OpenedTerrain terrain, MovingWindowOptions options)
       errors_(terrain_.store()),
       cache_(terrain_.store(), options_.page_cache_bytes) {
   if (options_.page_cache_bytes > options_.memory_bytes) {
-    throw Error(ErrorCode::invalid_argument,
-                "the cache of pages is larger than the whole memory limit: expected at most that");
+    refuse("the cache of pages is larger than the whole memory limit: expected at most that");
   }
 }
 
 MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& stop) {
   if (predicate == nullptr) {
-    throw Error(ErrorCode::invalid_argument, "the predicate to move to is null");
+    refuse("the predicate to move to is null");
   }
   const auto start = std::chrono::steady_clock::now();
   if (is_spoilt_) {
@@ -66,8 +65,7 @@ MoveResult MovingWindow::move_to(PredicatePtr predicate, const std::stop_token& 
   result.pages_examined = pages.size();
   result.certificate = errors_.certificate();
   result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cost.seconds = seconds_since(start);
   return result;
 }
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/mesh/compact.h"
 #include "engine/mesh/link.h"
 #include "engine/query/living/living_tin.h"
 #include "engine/query/living/stars_in_region.h"
-#include "engine/query/refine/clip.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
@@ -46,19 +46,18 @@ PredicatePtr predicate_of(const RefineRequest& request, const StoreFacts& facts)
 std::optional<Growth> growth_of(const RefineRequest& request, const StoreFile& store) {
   const DetailRequest& detail = request.detail;
   if ((detail.tolerance ? 1 : 0) + (detail.vertices ? 1 : 0) + (request.triangles ? 1 : 0) > 1) {
-    throw Error(ErrorCode::invalid_argument,
-                "of a tolerance, a number of vertices and a number of triangles more than one is "
-                "given: give one of them");
+    refuse(
+        "of a tolerance, a number of vertices and a number of triangles more than one is given: "
+        "give one of them");
   }
   if (detail.vertices) return Growth{records_of_first(*detail.vertices, store)};
   if (!request.triangles) return std::nullopt;
   const std::uint64_t t0 = store.t0().triangles.size();
   if (*request.triangles < t0) {
-    throw Error(ErrorCode::invalid_argument,
-                std::to_string(*request.triangles) +
-                    " triangles are asked for, but the coarsest TIN has " + std::to_string(t0) +
-                    ": ask for at least that many",
-                store.path());
+    refuse(std::to_string(*request.triangles) +
+               " triangles are asked for, but the coarsest TIN has " + std::to_string(t0) +
+               ": ask for at least that many",
+           store.path());
   }
   return Growth{std::min(*request.triangles - t0, 2 * store.record_count()),
                 Growth::Of::kTriangles};
@@ -82,8 +81,8 @@ Selection select(const RefineRequest& request, const RecordSource& source,
   return selection;
 }
 
-}  // namespace
-
+/// Counts the parts of a result, and fills in certificate and cost.
+/// @param begin  When the question was asked.
 void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
                    const QueryContext& context, std::chrono::steady_clock::time_point begin) {
   result.vertices = result.tin.vertices.size();
@@ -95,11 +94,8 @@ void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certi
   result.certified_deviation = certificate.deviation;
   result.exact = certificate.complete && terrain.store().facts().base_error == 0;
   result.cost = context.cost;
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.cost.seconds = seconds_since(begin);
 }
-
-namespace {
 
 /// Whether the triangles of the result are those that live at an error and meet a region.
 bool is_of_stars(const OpenedTerrain& terrain, const RefineRequest& request) {
@@ -125,6 +121,39 @@ Tin gather_in_region(const OpenedTerrain& terrain, const RefineRequest& request,
   }
   link_tin(living.tin());
   return living.release_tin();
+}
+
+/// Removes the triangles that do not meet the region; others may still name them as neighbours.
+void remove_apart(Tin& tin, const GridRegion& region, const QueryContext& context) {
+  for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
+    if (t % kStopInterval == 0) {
+      context.check_stop();
+    }
+    Triangle& triangle = tin.triangles[t];
+    if (tin.is_alive(t) && !region.meets(tin.position(triangle.v[0]), tin.position(triangle.v[1]),
+                                         tin.position(triangle.v[2]))) {
+      triangle.v[0] = kNone;
+    }
+  }
+}
+
+/// Keeps the triangles that meet `region`, and their vertices; both are renumbered and keep their
+/// order. Neighbours that went become kNone. What is left need not be a disk: it may be empty or in
+/// pieces. Where two pieces touch in one vertex, Vertex::triangle is a triangle of one of the
+/// pieces, on the border the first of a counter-clockwise walk.
+/// @param pages  Empty, or one entry for each triangle; the entries of triangles that stay are
+///               kept.
+/// @throws Error cancelled
+/// Cost: linear.
+void keep_meeting(Tin& tin, const GridRegion& region, std::vector<std::uint32_t>& pages,
+                  const QueryContext& context) {
+  remove_apart(tin, region, context);
+  const Renumbering triangles = compact_triangles(tin);
+  if (!pages.empty()) {
+    keep_numbered(triangles, pages);
+  }
+  point_vertices(tin);
+  compact_vertices(tin);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 // Selective refinement (paper, section 4): the TIN at a level of detail, in a region.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -75,11 +74,5 @@ struct RefinedTin {
 /// Cost: O(|T0| + k) time and memory for k records retrieved; usually O(k / B + log_B n) index
 /// pages, B entries a page.
 [[nodiscard]] RefinedTin refine(const OpenedTerrain& terrain, const RefineRequest& request);
-
-/// Completes a result of which only the mesh is there: counts its parts, and fills in certificate
-/// and cost. For callers that refine in another way and answer with the same result.
-/// @param begin  When the question was asked.
-void fill_in_facts(RefinedTin& result, const OpenedTerrain& terrain, const Certificate& certificate,
-                   const QueryContext& context, std::chrono::steady_clock::time_point begin);
 
 }  // namespace ptin

@@ -3,6 +3,7 @@
 // What a query carries along: its costs, its limits and its stop token.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -30,6 +31,20 @@ struct QueryCost {
   /// answer.
   void add_counts(const QueryCost& part) noexcept;
 };
+
+/// Seconds on the clock.
+[[nodiscard]] inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The answer that answer() gives, with the time that it took in its cost.
+template <class Answer>
+[[nodiscard]] auto timed(const Answer& answer) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = answer();
+  result.cost.seconds = seconds_since(start);
+  return result;
+}
 
 /// The context of one query. Every step of the query is handed the same context, and no two queries
 /// share one. Threads: one; a query runs on one thread.

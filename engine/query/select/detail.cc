@@ -14,10 +14,9 @@ namespace ptin {
 std::uint64_t records_of_first(std::uint64_t vertices, const StoreFile& store) {
   const std::uint64_t t0 = store.t0().vertices.size();
   if (vertices < t0) {
-    throw Error(ErrorCode::invalid_argument,
-                std::to_string(vertices) + " vertices are asked for, but the coarsest TIN has " +
-                    std::to_string(t0) + ": ask for at least that many",
-                store.path());
+    refuse(std::to_string(vertices) + " vertices are asked for, but the coarsest TIN has " +
+               std::to_string(t0) + ": ask for at least that many",
+           store.path());
   }
   return std::min(vertices - t0, store.record_count());
 }
@@ -25,13 +24,10 @@ std::uint64_t records_of_first(std::uint64_t vertices, const StoreFile& store) {
 Detail::Detail(const DetailRequest& request, const RecordSource& source, QueryContext& context)
     : asked_(request.tolerance || request.vertices) {
   if (request.tolerance && request.vertices) {
-    throw Error(ErrorCode::invalid_argument,
-                "both a tolerance and a number of vertices are given: give one of them");
+    refuse("both a tolerance and a number of vertices are given: give one of them");
   }
   if (request.tolerance && !(*request.tolerance >= 0)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the tolerance is negative or not a number: expected a value >= 0 in the height's "
-                "unit");
+    refuse("the tolerance is negative or not a number: expected a value >= 0 in the height's unit");
   }
   if (request.vertices) {
     cut_behind(records_of_first(*request.vertices, source.store), source, context);

@@ -127,7 +127,7 @@ class GridRegion {
   double min_x_ = 0, min_y_ = 0, max_x_ = 0,
          max_y_ = 0;  ///< The rectangle, or a box around all edges; widened.
   std::vector<Edge> edges_;
-  BinsAlongY bins_;  ///< Of the edges.
+  BinsAlongY bins_;  ///< The edges.
   double widening_ = 0;
 };
 

@@ -15,19 +15,6 @@ namespace {
 
 constexpr std::size_t kLeastPages = 16;  // Pages read at once, at least.
 
-/// A bound that the errors of at least `count` records of the whole file exceed, by the table of
-/// errors; -1 when all are needed.
-double bound_exceeded_by(std::span<const ErrorBin> bins, std::uint64_t count) {
-  std::uint64_t records = 0;
-  for (std::size_t i = bins.size(); i-- > 1;) {
-    records += bins[i].records;
-    if (records >= count) {
-      return bins[i - 1].upper;
-    }
-  }
-  return -1.0;
-}
-
 struct RankedPage {
   PageId id;
   std::uint32_t records;
@@ -174,6 +161,17 @@ class Search {
 };
 
 }  // namespace
+
+double bound_exceeded_by(std::span<const ErrorBin> bins, std::uint64_t count) {
+  std::uint64_t records = 0;
+  for (std::size_t i = bins.size(); i-- > 1;) {
+    records += bins[i].records;
+    if (records >= count) {
+      return bins[i - 1].upper;
+    }
+  }
+  return -1.0;
+}
 
 FirstRecords first_records(const RecordSource& source, const AttributePredicate& predicate,
                            Growth growth, std::uint64_t fixed_bytes, QueryContext& context,

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "engine/query/select/accounting.h"
@@ -53,6 +54,10 @@ struct Growth {
     return of == Of::kVertices ? 1 : 2;
   }
 };
+
+/// A bound that the errors of at least `count` records of the whole file exceed, by the table of
+/// errors; -1 when all are needed.
+[[nodiscard]] double bound_exceeded_by(std::span<const ErrorBin> bins, std::uint64_t count);
 
 /// The first records of the total order among those for which a predicate is true.
 struct FirstRecords {

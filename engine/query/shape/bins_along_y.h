@@ -67,7 +67,7 @@ class BinsAlongY {
 
   /// Those in bin i are numbers_[begin_[i], begin_[i + 1]); empty when there is nothing.
   std::vector<std::uint32_t> begin_, numbers_;
-  std::vector<std::uint32_t> first_bin_;  ///< Of each thing.
+  std::vector<std::uint32_t> first_bin_;  ///< One for each thing.
   double low_ = 0.0, bins_per_unit_ = 0.0;
 };
 

@@ -37,6 +37,14 @@ GridBox GridCell::box() const noexcept {
   return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), last(x), last(y)};
 }
 
+std::uint64_t position_along(const GridBox& box) noexcept {
+  const auto middle = [](std::int32_t low, std::int32_t high) {
+    return static_cast<std::uint32_t>(
+        std::clamp<std::int64_t>((std::int64_t{low} + high) / 2, 0, kGridMax));
+  };
+  return hilbert_position(middle(box.min_x, box.max_x), middle(box.min_y, box.max_y));
+}
+
 std::array<GridCell, 4> divided(const GridCell& cell) {
   const int level = cell.level - 1;
   const std::uint32_t side = 1U << level;

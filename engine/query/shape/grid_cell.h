@@ -26,6 +26,10 @@ struct GridCell {
   }
 };
 
+/// Where the middle of a box lies along the Hilbert curve; of a box that reaches beyond the grid that of
+/// the nearest position.
+[[nodiscard]] std::uint64_t position_along(const GridBox& box) noexcept;
+
 /// The quarters of a cell, in the order of the Hilbert curve (hilbert_position()). REQUIRES: more
 /// than one position.
 [[nodiscard]] std::array<GridCell, 4> divided(const GridCell& cell);

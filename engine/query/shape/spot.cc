@@ -34,9 +34,8 @@ SpotMap::SpotMap(const AffineMap& map, const GridBox& bounds) : map_(map) {
 
 std::optional<Spot> SpotMap::spot(MapPoint p) const {
   if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
-    throw Error(ErrorCode::invalid_argument,
-                "a coordinate of a position is not a finite number: give map units of the "
-                "terrain's CRS");
+    refuse(
+        "a coordinate of a position is not a finite number: give map units of the terrain's CRS");
   }
   const MapPoint grid = map_.to_grid(p);
   constexpr double kFarthest = 2147483648.0;

@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/query/sight/coarse_ground.h"
 
-#include "engine/geometry/hilbert.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/shape/grid_cell.h"
 
 namespace ptin {
-
-class CoarseGround::Gatherer final : public LivingVisitor {
- public:
-  Gatherer(std::vector<LivingTriangle>& triangles, const QueryContext& context)
-      : triangles_(triangles), context_(context) {}
-  bool begin(std::size_t most_triangles) override {
-    // They are sorted by copying.
-    context_.admit(3 * (triangles_.size() + most_triangles) * sizeof(LivingTriangle));
-    return true;
-  }
-  void take(const LivingTriangle& t) override {
-    if (!t.is_void) {
-      triangles_.push_back(t);
-    }
-  }
-
- private:
-  std::vector<LivingTriangle>& triangles_;
-  const QueryContext& context_;
-};
 
 CoarseGround::CoarseGround(const OpenedTerrain& terrain, double level, QueryContext& context) {
   DetailRequest request;
@@ -35,7 +15,17 @@ CoarseGround::CoarseGround(const OpenedTerrain& terrain, double level, QueryCont
   const Detail detail(request, terrain.record_source(), context);
   LivingPlace everywhere;
   everywhere.box = terrain.store().facts().bounds;
-  Gatherer gatherer(triangles_, context);
+  VisitorOf gatherer(
+      [&](std::size_t most_triangles) {
+        // They are sorted by copying.
+        context.admit(3 * (triangles_.size() + most_triangles) * sizeof(LivingTriangle));
+        return true;
+      },
+      [&](const LivingTriangle& t) {
+        if (!t.is_void) {
+          triangles_.push_back(t);
+        }
+      });
   LivingReader(terrain, detail).read(everywhere, context, gatherer);
   build(terrain.store().facts().heights);
 }
@@ -44,12 +34,7 @@ void CoarseGround::build(const HeightEncoding& heights) {
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
   order.reserve(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    const GridBox box = box_of(triangles_[i]);
-    const auto middle = [](std::int32_t a, std::int32_t b) {
-      return static_cast<std::uint32_t>((std::int64_t{a} + b) / 2);
-    };
-    order.emplace_back(hilbert_position(middle(box.min_x, box.max_x), middle(box.min_y, box.max_y)),
-                       i);
+    order.emplace_back(position_along(box_of(triangles_[i])), i);
   }
   std::sort(order.begin(), order.end());
   std::vector<LivingTriangle> sorted;

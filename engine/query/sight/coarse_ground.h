@@ -44,7 +44,6 @@ class CoarseGround {
   }
 
  private:
-  class Gatherer;
   static constexpr std::size_t kFanOut = 8;
   struct Node {
     GridBox box;

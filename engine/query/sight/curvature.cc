@@ -10,12 +10,12 @@ namespace ptin {
 void check(const Curvature& curvature) {
   constexpr double kMost = 1000;  // as on a ball of 13 km diameter
   if (!(curvature.coefficient >= 0) || !(curvature.coefficient <= kMost)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the curvature coefficient is negative or too large: expected 0 (a flat Earth) "
-                "to 1 (no refraction)");
+    refuse(
+        "the curvature coefficient is negative or too large: expected 0 (a flat Earth) to 1 (no "
+        "refraction)");
   }
   if (!(curvature.earth_diameter > 0)) {
-    throw Error(ErrorCode::invalid_argument, "the Earth's diameter is not positive");
+    refuse("the Earth's diameter is not positive");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
+#include "engine/query/select/total_order.h"
 #include "engine/query/sight/sight_measure.h"
 #include "engine/query/sight/sight_stars.h"
 
@@ -20,27 +21,11 @@ namespace ptin {
 
 namespace {
 
-[[noreturn]] void throw_invalid(const std::string& what) {
-  throw Error(ErrorCode::invalid_argument, what);
-}
-
 void check(const SightRequest& r) {
   ptin::check(r.curvature);
   if (!(r.wavelength >= 0) || !std::isfinite(r.wavelength)) {
-    throw_invalid("the wavelength is negative or not finite");
+    refuse("the wavelength is negative or not finite");
   }
-}
-
-/// The error that about `records` records exceed, by the file's table; infinite when none do.
-double error_of_first(const StoreFile& store, std::uint64_t records) {
-  double error = kInfinity;
-  std::uint64_t above = 0;
-  const auto bins = store.error_bins();
-  for (std::size_t i = bins.size(); i-- > 0 && above < records;) {
-    error = i == 0 ? 0.0 : bins[i - 1].upper;
-    above += bins[i].records;
-  }
-  return error;
 }
 
 /// Sign of a height above the ground at a located point of surface, in rationals.
@@ -112,8 +97,8 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   if (coarse_records > 0 && request_.verdict_only) {
-    coarse_.emplace(terrain_, std::max(error_of_first(store, coarse_records), detail_.tolerance()),
-                    context);
+    const double error = bound_exceeded_by(store.error_bins(), coarse_records);
+    coarse_.emplace(terrain_, std::max({error, detail_.tolerance(), 0.0}), context);
   }
   base_cost = context.cost;
 }
@@ -121,11 +106,11 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
 Spot SightSolver::Impl::spot_of_end(MapPoint p, double height) const {
   constexpr double kMost = 1e30;  // differences and products of such heights are finite
   if (!(std::abs(height) <= kMost)) {
-    throw_invalid("the height of an end is not a finite number, or beyond 1e30");
+    refuse("the height of an end is not a finite number, or beyond 1e30");
   }
   const std::optional<Spot> spot = map_.spot(p);
   if (!spot) {
-    throw_invalid("an end lies too far from the terrain: give map units of its CRS");
+    refuse("an end lies too far from the terrain: give map units of its CRS");
   }
   return *spot;
 }
@@ -136,7 +121,7 @@ double SightSolver::Impl::ground_length(const SightPair& pair) const {
                             : std::sqrt((pair.b.x - pair.a.x) * (pair.b.x - pair.a.x) +
                                         (pair.b.y - pair.a.y) * (pair.b.y - pair.a.y));
   if (!std::isfinite(length)) {
-    throw_invalid("the distance between the ends is not known: they may lie off the ellipsoid");
+    refuse("the distance between the ends is not known: they may lie off the ellipsoid");
   }
   return length;
 }
@@ -158,8 +143,7 @@ SightResult SightSolver::Impl::solve(const SightPair& pair) {
     result.cost = context.cost;
   }
   terrain_.store().pages().check_unchanged();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cost.seconds = seconds_since(start);
   return result;
 }
 

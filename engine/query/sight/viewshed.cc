@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -223,12 +222,8 @@ class ViewshedSearch {
 }  // namespace
 
 Viewshed viewshed(const OpenedTerrain& terrain, const ViewshedRequest& request) {
-  const auto start = std::chrono::steady_clock::now();
   check(request);
-  Viewshed result = ViewshedSearch(terrain, request).run();
-  result.cost.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed([&] { return ViewshedSearch(terrain, request).run(); });
 }
 
 }  // namespace ptin

@@ -140,8 +140,7 @@ class Writer {
     if (!summary_.is_cut) send_end(mesh.tin());
     context_.cost.records_applied = summary_.splits;
     summary_.cost = context_.cost;
-    summary_.cost.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    summary_.cost.seconds = seconds_since(start);
     return summary_;
   }
 
@@ -337,7 +336,7 @@ void Writer::send_head() {
 
 void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
   if (request_.metadata.size() > kMostMetadata) {
-    throw Error(ErrorCode::invalid_argument, "the stream's metadata is longer than 1 MiB");
+    refuse("the stream's metadata is longer than 1 MiB");
   }
   const StoreFacts& f = store_.facts();
   const Certificate now = certificate_from(splits, 0);

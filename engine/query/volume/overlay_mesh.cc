@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/geometry/hilbert.h"
+#include "engine/query/shape/grid_cell.h"
 #include "engine/query/volume/grid_box.h"
 
 namespace ptin {
@@ -15,15 +15,6 @@ namespace {
 
 /// Bytes of a triangle while the array of them grows, or while they are put in order.
 constexpr std::uint64_t kBytesATriangle = 2 * sizeof(LivingTriangle) + 72;
-
-/// Along the Hilbert curve by the middle of the box.
-std::uint64_t position_along(const GridBox& box) noexcept {
-  const auto middle = [](std::int32_t low, std::int32_t high) {
-    return static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>((std::int64_t{low} + high) / 2, 0, kGridMax));
-  };
-  return hilbert_position(middle(box.min_x, box.max_x), middle(box.min_y, box.max_y));
-}
 
 }  // namespace
 

@@ -44,8 +44,7 @@ RegionCutter::RegionCutter(const Region& region, const AffineMap& map) : region_
   } else if (const auto* polygon = std::get_if<Polygon>(&region)) {
     for (const std::vector<MapPoint>& ring : polygon->rings) add_ring(ring, map);
   } else {
-    throw Error(ErrorCode::invalid_argument,
-                "a volume is asked of a window or a polygon; a point has no inside");
+    refuse("a volume is asked of a window or a polygon; a point has no inside");
   }
   cancel_pairs();
   std::vector<Interval> reaches;

@@ -66,7 +66,7 @@ class RegionCutter {
 
   GridRegion region_;
   std::vector<Edge> edges_;
-  BinsAlongY bins_;  ///< Of the edges.
+  BinsAlongY bins_;  ///< The edges.
 };
 
 }  // namespace ptin

@@ -19,17 +19,14 @@ constexpr double kLargest = 1e100;
 void check(const VolumeRequest& request, std::span<const double> levels) {
   const auto is_level = [](double level) { return std::abs(level) <= kLargest; };
   if (levels.empty() || !std::all_of(levels.begin(), levels.end(), is_level)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the level of a volume must be a finite number, no larger than 1e100");
+    refuse("the level of a volume must be a finite number, no larger than 1e100");
   }
   if (levels.size() > 1 && request.other != nullptr) {
-    throw Error(ErrorCode::invalid_argument,
-                "several levels are asked for beside another terrain, which stands in their place");
+    refuse("several levels are asked for beside another terrain, which stands in their place");
   }
   const double scale = request.other_height_scale;
   if (!(scale >= 1 / kLargest && scale <= kLargest)) {
-    throw Error(ErrorCode::invalid_argument,
-                "the scale of the other terrain's heights must be a number above 0");
+    refuse("the scale of the other terrain's heights must be a number above 0");
   }
 }
 
@@ -191,8 +188,7 @@ std::vector<VolumeResult> volumes(const OpenedTerrain& terrain, const VolumeRequ
   const auto start = std::chrono::steady_clock::now();
   check(request, levels);
   std::vector<VolumeResult> results = Measuring(terrain, request, levels).run();
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = seconds_since(start);
   for (VolumeResult& result : results) result.cost.seconds = seconds;
   return results;
 }

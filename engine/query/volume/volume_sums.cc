@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/query/shape/clip.h"
+
 namespace ptin {
 
 namespace {
@@ -14,10 +16,6 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRoundings = 16 * kEpsilon;
 /// How good integrals are in degrees (plane_area.h), as a share.
 constexpr double kQuadrature = 1e-11;
-
-double twice_area(const std::array<MapPoint, 3>& c) {
-  return (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
-}
 
 /// Width plus height of the box around points.
 double half_perimeter_of(std::span<const MapPoint> points) {
@@ -48,7 +46,8 @@ double LinearHeight::at(MapPoint p) const {
 double LinearHeight::noise(double shift) const {
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
   const double across = half_perimeter_of(corners);
-  const double thinness = across * (kRoundings * across + shift) / std::abs(twice_area(corners));
+  const double thinness =
+      across * (kRoundings * across + shift) / std::abs(cross(corners[0], corners[1], corners[2]));
   return std::min(thinness, 1.0) * (*high - *low) +
          kRoundings * std::max(std::abs(*low), std::abs(*high));
 }

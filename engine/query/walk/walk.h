@@ -4,7 +4,7 @@
 // so a line through vertices, along edges or along the border is walked like any other.
 //
 // The mesh must be valid and whole (mesh/validate.h): a disk over a convex domain. A mesh that
-// keep_meeting() has cut (refine/clip.h) is not.
+// refine() has cut at a region (refine/refine.h) is not.
 #pragma once
 
 #include <array>
