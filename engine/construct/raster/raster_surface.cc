@@ -55,7 +55,7 @@ struct Crossing {
   std::int64_t steps;  ///< From the edge's first end, across the lines.
   std::int64_t floor;  ///< How far it is from there in x, or in y, rounded down.
   bool is_whole;       ///< Nothing was rounded.
-  double fraction;     ///< What was.
+  double fraction;     ///< The part that was rounded away.
   double rise;         ///< The edge's height there, above its first end.
 };
 

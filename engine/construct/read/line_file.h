@@ -36,7 +36,7 @@ using TakeLine = std::function<void(const std::vector<SourcePoint>& line, bool h
 [[nodiscard]] LineFileCrs read_line_file(const std::string& path, const LayerWish& wish,
                                          const TakeLine& take, const std::stop_token& stop);
 
-/// The same of LandXML, for read_line_file().
+/// Does what read_line_file() says of LandXML, with the same parameters and errors.
 [[nodiscard]] LineFileCrs read_land_xml_lines(const std::string& path, const LayerWish& wish,
                                               const TakeLine& take, const std::stop_token& stop);
 

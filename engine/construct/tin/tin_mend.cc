@@ -17,7 +17,7 @@ namespace ptin {
 
 namespace {
 
-/// What became of slivers.
+/// The result of taking slivers away by flips of edges.
 struct SliverFlips {
   std::uint64_t mended = 0;  ///< Bad triangles that were taken away: slivers, and what flips made.
   /// Ends of edges beyond which there may be a triangle of the mesh that is not at hand. Where

@@ -19,16 +19,6 @@ using reference::rational_of;
 using reference::RationalPoint;
 using reference::SmallTerrain;
 
-LivingTriangle living_of(const Tin& tin, TriangleId t) {
-  LivingTriangle living;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const VertexId v = tin.triangles[t].v[i];
-    living.corner[i] = {tin.position(v), tin.vertices[v].height, tin.has_height[v] != 0};
-  }
-  living.is_void = tin.classes[t] == TriangleClass::kVoid;
-  return living;
-}
-
 Rational share_of(const LinePoint& p) {
   return rational_of(p.numerator) / rational_of(p.denominator);
 }
@@ -54,7 +44,7 @@ RC_GTEST_PROP(SharedStretch, IsThatOfRationals, (std::uint64_t seed)) {
   const RationalPoint a = rational_of(p);
   const RationalPoint b = rational_of(q);
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {
-    const LivingTriangle living = living_of(tin, t);
+    const LivingTriangle living = living_triangle(tin, t);
     const std::optional<reference::Shares> known = reference::shares_in(tin, t, a, b);
     const std::optional<SharedStretch> found = shared_stretch(living, heights, p, q);
     RC_ASSERT(found.has_value() == known.has_value());
