@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/measure/lanes.h"
 
+#include <algorithm>
 #include <atomic>
 
 namespace ptin {
@@ -25,7 +26,7 @@ LaneSet lanes_of_processor() noexcept {
   return LaneSet::kPlain;
 }
 
-void use_lanes(LaneSet set) noexcept { in_use() = set; }
+void use_lanes(LaneSet most) noexcept { in_use() = std::min(most, lanes_of_processor()); }
 LaneSet lanes_in_use() noexcept { return in_use().load(std::memory_order_relaxed); }
 
 }  // namespace ptin

@@ -1,36 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Vectors of kSampleLanes doubles for the measuring loops, as wide as the processor has them.
+// Vectors of kSampleLanes doubles for the measuring loops, in the registers that the processor has.
 //
-// A loop is a template over its vector, WideLanes or HalfLanes, and in_lanes() runs it with the one
-// that suits the processor. gcc 12 takes vectors apart lane by lane where they are wider than the
-// instructions that it may use and are compared, which is why AVX2 has a type of its own; and where
-// two comparisons are joined by `&`, so loops compare the smaller of two values.
+// A loop is a struct with a function `run` that is a template over its vector, WideLanes or
+// HalfLanes; in_lanes() runs it with the one that suits the processor. AVX2 has a type of its own
+// because gcc 12 takes vectors apart lane by lane where they are compared and are wider than the
+// instructions that it may use (engine/DECISIONS.md, section 3.3). It does so where two comparisons
+// are joined by `&`, too, so loops compare the smaller of two values.
 //
-// All operations are those of IEEE 754 on single lanes, none is fused: each type gives the same bits.
+// Every type gives the same bits: operations are those of IEEE 754 on single lanes, none is fused
+// (-ffp-contract=off), and where a NaN or a zero's sign may decide, both types decide alike.
+//
+// The linker cannot take code for one processor in the place of code for another: what may use
+// AVX-512 or AVX2 is run_wide() and run_half() alone, each a function of its own name for each loop,
+// and what is inlined into them. Functions that are not inlined there, those of the standard
+// library too, are compiled as everywhere else.
 #pragma once
 
 #include <cstdint>
-#include <utility>
 
 #include "engine/construct/measure/star_samples.h"
 
 namespace ptin {
 
-// Always inlined, and so compiled for the processor of its caller.
+// Always inlined, and so compiled with the instructions of its caller: a function that is only
+// inline may be called, without them and with its vectors in memory.
 #define PTIN_LANES inline __attribute__((always_inline))
 
-/// One vector of AVX-512.
+/// One register of AVX-512.
 using WideLanes = double __attribute__((vector_size(64)));
 
-/// Two vectors of AVX2.
+/// Two registers of AVX2; elsewhere what the compiler makes of it.
 struct HalfLanes {
   using Half = double __attribute__((vector_size(32)));
 
   HalfLanes() = default;
   PTIN_LANES HalfLanes(Half low_lanes, Half high_lanes) noexcept
       : low(low_lanes), high(high_lanes) {}
-  PTIN_LANES HalfLanes(double all) noexcept : low(Half{} + all), high(Half{} + all) {}
+  // Implicit, as in the arithmetic of vectors and single numbers that WideLanes has; as all_lanes().
+  PTIN_LANES HalfLanes(double all) noexcept  // NOLINT(google-explicit-constructor)
+      : low(all - Half{}), high(all - Half{}) {}
 
   friend PTIN_LANES HalfLanes operator+(HalfLanes a, HalfLanes b) noexcept {
     return {a.low + b.low, a.high + b.high};
@@ -49,9 +58,10 @@ struct HalfLanes {
   Half low{}, high{};
 };
 
+/// The value in every lane. To take zero off keeps the sign of a zero, which to add it would not.
 template <class Lanes>
 PTIN_LANES Lanes all_lanes(double value) noexcept {
-  return Lanes{} + value;
+  return value - Lanes{};
 }
 
 /// The lanes at `from`, which need not be aligned.
@@ -89,26 +99,29 @@ PTIN_LANES Lanes magnitude(Lanes a) noexcept {
   return where_below(a, 0.0, -a, a);
 }
 
+/// Lanes four apart are compared first, then those two apart, then the last two: in the same order
+/// with every type, since it decides which of a NaN and a number stays.
 PTIN_LANES double largest_lane(HalfLanes v) noexcept {
   const HalfLanes::Half four = v.high > v.low ? v.high : v.low;
-  const double a = four[0] > four[1] ? four[0] : four[1];
-  const double b = four[2] > four[3] ? four[2] : four[3];
-  return a > b ? a : b;
+  const auto low = __builtin_shufflevector(four, four, 0, 1);
+  const auto high = __builtin_shufflevector(four, four, 2, 3);
+  const auto two = high > low ? high : low;
+  return two[1] > two[0] ? two[1] : two[0];
 }
-
 PTIN_LANES double largest_lane(WideLanes v) noexcept {
-  using Indices = long long __attribute__((vector_size(64)));
-  v = larger(__builtin_shuffle(v, Indices{4, 5, 6, 7, 0, 1, 2, 3}), v);
-  v = larger(__builtin_shuffle(v, Indices{2, 3, 0, 1, 6, 7, 4, 5}), v);
-  return v[0] > v[1] ? v[0] : v[1];
+  v = larger(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+  v = larger(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+  return v[1] > v[0] ? v[1] : v[0];
 }
 
-/// What loops in lanes are compiled for.
+/// The processors that loops in lanes are compiled for, each with all that those before it have.
 enum class LaneSet : std::uint8_t { kPlain, kAvx2, kAvx512 };
-/// The most that this processor has.
+/// The last that this processor is.
 [[nodiscard]] LaneSet lanes_of_processor() noexcept;
-/// Has in_lanes() use no more than these, for tests of them; the processor has them.
-void use_lanes(LaneSet set) noexcept;
+/// Has in_lanes() use no more than `most`, in all threads. Answers do not depend on it: it is for
+/// tests and measurements.
+void use_lanes(LaneSet most) noexcept;
+/// What in_lanes() uses: at first all that the processor has.
 [[nodiscard]] LaneSet lanes_in_use() noexcept;
 
 namespace lanes_internal {
