@@ -7,7 +7,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,6 +19,7 @@
 #include "engine/construct/measure/fan_measure.h"
 #include "engine/construct/measure/void_measure.h"
 #include "tests/construct/star_fixture.h"
+#include "tests/construct/test_terrain.h"
 
 namespace ptin {
 namespace {
