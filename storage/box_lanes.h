@@ -14,6 +14,7 @@ namespace ptin::lanes {
 
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Float4 = float __attribute__((vector_size(16)));
+using Unsigned4 = std::uint32_t __attribute__((vector_size(16)));
 using Short4 = std::int16_t __attribute__((vector_size(8)));
 
 template <class Lanes>
@@ -21,6 +22,16 @@ template <class Lanes>
   Lanes v;
   std::memcpy(&v, from, sizeof v);
   return v;
+}
+
+/// Lanes 0 1 and 2 3, given by 64 bits each.
+[[nodiscard]] inline Int4 pair(std::uint64_t lower, std::uint64_t upper) noexcept {
+  using Unsigned2 = std::uint64_t __attribute__((vector_size(16)));
+  return std::bit_cast<Int4>(Unsigned2{lower, upper});
+}
+/// Sums that wrap around.
+[[nodiscard]] inline Int4 sum(Int4 a, Int4 b) noexcept {
+  return std::bit_cast<Int4>(std::bit_cast<Unsigned4>(a) + std::bit_cast<Unsigned4>(b));
 }
 
 /// True when any bit of `v` is set. For the result of a comparison: true when it holds for any

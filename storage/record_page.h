@@ -101,8 +101,7 @@ class RecordPage {
                      std::vector<VertexSplit>& out) const;
   [[nodiscard]] bool find(const PageRun& run, std::uint32_t k, RingPlace& place) const noexcept;
   [[nodiscard]] bool ends_of(const RingPlace& place, VertexSplit& r) const noexcept;
-  [[nodiscard]] GridPoint corner_position(GridPoint u, const RingShape& shape,
-                                          std::size_t bit) const noexcept;
+  [[nodiscard]] std::uint64_t corner_offset(const RingShape& shape, std::size_t bit) const noexcept;
   [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
   template <class Visit>
   void for_each_corner(const RingPlace& place, const Visit& visit) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/mesh/split.h"
 
-#include "engine/geometry/orient.h"
+#include <cstdint>
 
 namespace ptin {
 
@@ -17,34 +17,37 @@ constexpr std::uint8_t kPrevious[3] = {2, 0, 1};
 
 constexpr Triangle kRemoved{{kNone, kNone, kNone}, {kNone, kNone, kNone}};
 
+/// From u to a vertex.
+struct Offset {
+  std::int64_t x = 0, y = 0;
+};
+Offset offset(GridPoint u, GridPoint p) noexcept {
+  return {std::int64_t{p.x} - u.x, std::int64_t{p.y} - u.y};
+}
+/// orient(u, u + a, u + b): a vertex of a fan is subtracted from u once, not for each triangle.
+std::int64_t turn(const Offset& a, const Offset& b) noexcept { return a.x * b.y - a.y * b.x; }
+
 /// The fan of a split: triangles of w from vl counter-clockwise round to vr.
 struct Fan {
   TriangleId first = kNone, last = kNone;
+  int place_in_first = 0, place_in_last = 0;           ///< Of the corner behind w.
   TriangleId outer_left = kNone, outer_right = kNone;  ///< Beyond the edges (w, vl) and (vr, w).
   VertexId vl = kNone, vr = kNone;
+  Offset to_vl, to_vr;
   bool holds_triangle_of_w = false;
   bool fits = false;
 };
 
-bool turns_left(const Tin& tin, VertexId a, VertexId b, VertexId c) {
-  return orient(tin.position(a), tin.position(b), tin.position(c)) > 0;
-}
-
-/// What lies around corner w of a triangle. All six numbers are loaded at once and the right ones
-/// selected, so that a walk waits for one load a triangle and for no branch.
-struct Around {
-  VertexId next, previous;  ///< The other corners, counter-clockwise.
-  TriangleId turn;          ///< The next triangle around w, counter-clockwise.
+/// A triangle of w on a counter-clockwise walk, which has come by its edge (w, next). From the place
+/// of one corner the rest follows: half the instructions of selecting each by where w is.
+struct Step {
+  int place;          ///< Of corner `next`.
+  VertexId previous;  ///< The third corner.
+  TriangleId turn;    ///< The next triangle around w, beyond the edge (w, previous).
 };
-Around around(const Triangle& t, VertexId w) noexcept {
-  const std::uint32_t m1 = 0U - static_cast<std::uint32_t>(t.v[1] == w);
-  const std::uint32_t m2 = 0U - static_cast<std::uint32_t>(t.v[2] == w);
-  const std::uint32_t m0 = ~(m1 | m2);
-  const auto select = [=](std::uint32_t if_0, std::uint32_t if_1, std::uint32_t if_2) {
-    return (if_0 & m0) | (if_1 & m1) | (if_2 & m2);
-  };
-  return {select(t.v[1], t.v[2], t.v[0]), select(t.v[2], t.v[0], t.v[1]),
-          select(t.n[1], t.n[2], t.n[0])};
+Step step(const Triangle& t, VertexId w, VertexId next) noexcept {
+  const int place = place_of(t.v, next);
+  return {place, t.v[0] ^ t.v[1] ^ t.v[2] ^ w ^ next, t.n[place]};
 }
 
 /// How a split names vl and vr: by their ids, or by their keys.
@@ -70,13 +73,15 @@ void find_first(const Tin& tin, VertexId w, const Ends& ends, Fan& fan) {
   const Vertex* const vertices = tin.vertices.data();
   const TriangleId start = vertices[w].triangle;
   TriangleId t = start;
+  VertexId next = triangles[t].v[kNext[place_of(triangles[t].v, w)]];
   do {
-    const Around here = around(triangles[t], w);
-    if (ends.is_vl(vertices, here.next)) {
+    if (ends.is_vl(vertices, next)) {
       fan.first = t;
-      fan.vl = here.next;
+      fan.vl = next;
       return;
     }
+    const Step here = step(triangles[t], w, next);
+    next = here.previous;
     t = here.turn;
   } while (t != kNone && t != start);
 }
@@ -108,43 +113,47 @@ Fan move_fan(Tin& tin, const SplitSite& site, const Ends& ends) {
   const Vertex* const vertices = tin.vertices.data();
   const GridPoint u = vertices[site.u].position;
   const TriangleId known = vertices[site.w].triangle;
-  fan.outer_left = triangles[fan.first].n[kPrevious[place_of(triangles[fan.first].v, site.w)]];
-  GridPoint a = vertices[fan.vl].position;
+  Step here = step(triangles[fan.first], site.w, fan.vl);
+  fan.place_in_first = here.place;
+  fan.outer_left = triangles[fan.first].n[kNext[here.place]];
+  fan.to_vl = offset(u, vertices[fan.vl].position);
+  Offset to_next = fan.to_vl;
   TriangleId t = fan.first;
-  do {
-    Triangle& triangle = triangles[t];
-    const Around here = around(triangle, site.w);
-    const GridPoint b = vertices[here.previous].position;
-    if (orient(u, a, b) <= 0) {
+  while (true) {
+    const VertexId previous = here.previous;
+    const Offset to_previous = offset(u, vertices[previous].position);
+    if (turn(to_next, to_previous) <= 0) {
       return fan;
     }
-    a = b;
-    triangle.v[place_of(triangle.v, site.w)] = site.u;
+    triangles[t].v[kPrevious[here.place]] = site.u;
     fan.holds_triangle_of_w |= known == t;
     fan.last = t;
+    fan.place_in_last = here.place;
+    to_next = to_previous;
     t = here.turn;
-    if (ends.is_vr(vertices, here.previous)) {
-      fan.vr = here.previous;
+    if (ends.is_vr(vertices, previous)) {
+      fan.vr = previous;
+      fan.to_vr = to_previous;
       fan.outer_right = t;
       fan.fits = true;
       return fan;
     }
-  } while (t != kNone && t != fan.first);
-  return fan;
+    if (t == kNone || t == fan.first) {
+      return fan;
+    }
+    here = step(triangles[t], site.w, previous);
+  }
 }
 
 /// True when the sides of the split fit. A side that exists is a strictly counter-clockwise
 /// triangle. A side that does not exist lies flat on the border.
 bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
-  const bool left = s.has_left
-                        ? turns_left(tin, s.u, s.w, s.vl)
-                        : fan.outer_left == kNone &&
-                              orient(tin.position(s.vl), tin.position(s.u), tin.position(s.w)) == 0;
-  const bool right =
-      s.has_right ? turns_left(tin, s.u, s.vr, s.w)
-                  : fan.outer_right == kNone &&
-                        orient(tin.position(s.w), tin.position(s.u), tin.position(s.vr)) == 0;
-  return left && right && (s.has_left || s.has_right);
+  const Offset to_w = offset(tin.position(s.u), tin.position(s.w));
+  const std::int64_t left = turn(to_w, fan.to_vl);
+  const std::int64_t right = turn(fan.to_vr, to_w);
+  return (s.has_left ? left > 0 : left == 0 && fan.outer_left == kNone) &&
+         (s.has_right ? right > 0 : right == 0 && fan.outer_right == kNone) &&
+         (s.has_left || s.has_right);
 }
 
 void put(Tin& tin, TriangleId id, const Triangle& triangle, TriangleClass c) {
@@ -170,15 +179,13 @@ bool split_between(Tin& tin, SplitSite& site, const Ends& ends, TriangleId left,
         site.left_class);
     replace_neighbour(tin, fan.outer_left, fan.first, left);
   }
-  Triangle& first = tin.triangles[fan.first];
-  first.n[kPrevious[place_of(first.v, site.u)]] = left;
+  tin.triangles[fan.first].n[kNext[fan.place_in_first]] = left;
   if (site.has_right) {
     put(tin, right, {{site.u, site.vr, site.w}, {fan.outer_right, left, fan.last}},
         site.right_class);
     replace_neighbour(tin, fan.outer_right, fan.last, right);
   }
-  Triangle& last = tin.triangles[fan.last];
-  last.n[kNext[place_of(last.v, site.u)]] = right;
+  tin.triangles[fan.last].n[fan.place_in_last] = right;
 
   tin.vertices[site.u].triangle = site.has_right ? fan.first : left;
   TriangleId& known = tin.vertices[site.w].triangle;

@@ -27,11 +27,12 @@ struct Screening {
   double *crosses, *least, *screens;
 };
 
+template <class Lanes>
 PTIN_LANES void fill_crosses(const Screening& in) noexcept {
   for (std::size_t i = 0; i < in.degree; ++i) {
     for (std::size_t w = 0; w < in.stride; w += kSampleLanes) {
       store_lanes(in.crosses + i * in.stride + w,
-                  in.x[i] * load_lanes(in.y + w) - in.y[i] * load_lanes(in.x + w));
+                  in.x[i] * load_lanes<Lanes>(in.y + w) - in.y[i] * load_lanes<Lanes>(in.x + w));
     }
   }
 }
@@ -42,37 +43,37 @@ PTIN_LANES void fill_crosses(const Screening& in) noexcept {
 /// c(w, i) >= 0 >= c(w, i + 1). (At the two edges of w there is no fan triangle, and none seems to
 /// hold u, since c(i, i + 1) > 0 in a closed star.) For each w, `least` gets twice the area of its
 /// smallest fan triangle, and `screens` gets |residual| of u.
-PTIN_VERSIONS
-void screen_lanes(const Screening& in) noexcept {
-  fill_crosses(in);
-  Lanes number;
-  for (std::size_t i = 0; i < kSampleLanes; ++i) {
-    number[i] = static_cast<double>(i);
-  }
-  for (std::size_t w = 0; w < in.stride; w += kSampleLanes) {
-    const Lanes w_z = load_lanes(in.z + w);
-    Lanes least = Lanes{} + kInfinity;
-    Lanes numerator = {};
-    Lanes area = Lanes{} + 1.0;
-    std::size_t i = in.degree - 1;
-    for (std::size_t k = 0; k < in.degree; i = k++) {
-      const Lanes c_i = load_lanes(in.crosses + i * in.stride + w);  // -c(w, i)
-      const Lanes c_k = load_lanes(in.crosses + k * in.stride + w);
-      const Lanes determinant = in.crosses[i * in.stride + k] - c_i + c_k;
-      // The smaller is 0 at the two edges of w itself, whose determinant is 0; 1 or more elsewhere.
-      const Lanes to_i = magnitude(number - static_cast<double>(i));
-      const Lanes to_k = magnitude(number - static_cast<double>(k));
-      least = smaller(least, smaller(to_i, to_k) < 0.5 ? least : determinant);
-      const Lanes within = smaller(-c_i, c_k);
-      const Lanes n = determinant * -w_z + ((in.z[k] - w_z) * c_i - (in.z[i] - w_z) * c_k);
-      numerator = within < 0.0 ? numerator : n;
-      area = within < 0.0 ? area : determinant;
+struct Screen {
+  template <class Lanes>
+  PTIN_LANES static void run(Screening in) noexcept {
+    constexpr double kNumbers[kSampleLanes] = {0, 1, 2, 3, 4, 5, 6, 7};
+    fill_crosses<Lanes>(in);
+    Lanes number = load_lanes<Lanes>(kNumbers);
+    for (std::size_t w = 0; w < in.stride; w += kSampleLanes) {
+      const Lanes w_z = load_lanes<Lanes>(in.z + w);
+      Lanes least = all_lanes<Lanes>(kInfinity);
+      Lanes numerator = {};
+      Lanes area = all_lanes<Lanes>(1.0);
+      std::size_t i = in.degree - 1;
+      for (std::size_t k = 0; k < in.degree; i = k++) {
+        const Lanes c_i = load_lanes<Lanes>(in.crosses + i * in.stride + w);  // -c(w, i)
+        const Lanes c_k = load_lanes<Lanes>(in.crosses + k * in.stride + w);
+        const Lanes determinant = in.crosses[i * in.stride + k] - c_i + c_k;
+        // The smaller is 0 at the two edges of w itself, whose determinant is 0; 1 or more elsewhere.
+        const Lanes to_i = magnitude(number - static_cast<double>(i));
+        const Lanes to_k = magnitude(number - static_cast<double>(k));
+        least = smaller(least, where_below(smaller(to_i, to_k), 0.5, least, determinant));
+        const Lanes within = smaller(-c_i, c_k);
+        const Lanes n = determinant * -w_z + ((in.z[k] - w_z) * c_i - (in.z[i] - w_z) * c_k);
+        numerator = where_below(within, 0.0, numerator, n);
+        area = where_below(within, 0.0, area, determinant);
+      }
+      store_lanes(in.least + w, least);
+      store_lanes(in.screens + w, magnitude(numerator) * (1.0 / area));
+      number = number + static_cast<double>(kSampleLanes);
     }
-    store_lanes(in.least + w, least);
-    store_lanes(in.screens + w, magnitude(numerator) * (1.0 / area));
-    number = number + static_cast<double>(kSampleLanes);
   }
-}
+};
 
 void copy_padded(const std::vector<double>& from, std::size_t stride, std::vector<double>& to) {
   to.resize(std::max(to.size(), stride));
@@ -92,8 +93,8 @@ void CollapseChooser::screen_all(const StarSamples& s) {
   crosses_.resize(std::max(crosses_.size(), degree * stride));
   least_.resize(std::max(least_.size(), stride));
   screens_.resize(std::max(screens_.size(), stride));
-  screen_lanes({x_.data(), y_.data(), z_.data(), degree, stride, crosses_.data(), least_.data(),
-                screens_.data()});
+  in_lanes<Screen>(Screening{x_.data(), y_.data(), z_.data(), degree, stride, crosses_.data(),
+                             least_.data(), screens_.data()});
   candidates_.resize(degree);
   std::size_t count = 0;
   for (std::size_t w = 0; w < degree; ++w) {

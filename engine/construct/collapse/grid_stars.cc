@@ -46,7 +46,7 @@ std::vector<std::uint8_t> grid_link_of(std::uint32_t shape) {
   return link;
 }
 
-/// As screen_lanes() in collapse_choice.cc. Nothing where a fan triangle would not be
+/// As Screen in collapse_choice.cc. Nothing where a fan triangle would not be
 /// counter-clockwise.
 std::optional<GridCandidate> grid_candidate_of(const std::vector<std::uint8_t>& link,
                                                std::uint8_t w) {

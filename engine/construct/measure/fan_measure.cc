@@ -19,67 +19,79 @@ double cross(double ax, double ay, double bx, double by, bool wide) noexcept {
   return wide ? cross_wide(ax, ay, bx, by) : ax * by - ay * bx;
 }
 
-/// The loops in lanes are for narrow stars. Wide stars (more than 2^25 grid units across) are rare
-/// and take the scalar loop, residual_wide().
-PTIN_VERSIONS
-double largest_residual_narrow(const double* x, const double* y, const double* z,
-                               const FanFrame& fan, std::size_t begin, std::size_t end,
-                               double stop_above) noexcept {
-  const std::size_t triangles = fan.triangles();
-  const double* sx = fan.spoke_x.data();
-  const double* sy = fan.spoke_y.data();
-  const double* sz = fan.spoke_z.data();
-  const double* det = fan.determinant.data();
-  const double* inv = fan.inverse.data();
-  double worst = 0.0;
-  for (std::size_t k = begin; k < end; k += kSampleLanes) {
-    const Lanes qx = load_lanes(x + k) - fan.w_x;
-    const Lanes qy = load_lanes(y + k) - fan.w_y;
-    const Lanes qz = load_lanes(z + k) - fan.w_z;
-    Lanes block = {};
-    Lanes before = sx[0] * qy - sy[0] * qx;
-    for (std::size_t i = 0; i < triangles; ++i) {
-      const Lanes after = sx[i + 1] * qy - sy[i + 1] * qx;
-      Lanes r = magnitude((det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i]);
-      const Lanes within = smaller(before, -after);  // not negative inside of the triangle
-      r = within < 0.0 ? block : r;
-      block = larger(block, r);
-      before = after;
-    }
-    worst = std::max(worst, largest_lane(block));
-    if (worst > stop_above) {
-      break;
-    }
-  }
-  return worst;
-}
+// The loops in lanes are for narrow stars. Wide stars (more than 2^25 grid units across) are rare
+// and take the scalar loop, residual_wide().
 
-PTIN_VERSIONS
-void assign_narrow(const double* x, const double* y, const double* z, std::size_t end,
-                   const FanFrame& fan, double* triangle, double* residual) noexcept {
-  const std::size_t triangles = fan.triangles();
-  for (std::size_t k = 0; k < end; k += kSampleLanes) {
-    const Lanes qx = load_lanes(x + k) - fan.w_x;
-    const Lanes qy = load_lanes(y + k) - fan.w_y;
-    const Lanes qz = load_lanes(z + k) - fan.w_z;
-    Lanes found = {};
-    Lanes worst = {};
-    Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
-    for (std::size_t i = 0; i < triangles; ++i) {
-      const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
-      const Lanes r = magnitude(
-          (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
-          fan.inverse[i]);
-      const Lanes within = smaller(before, -after);
-      const Lanes number = Lanes{} + static_cast<double>(i);
-      worst = within < 0.0 ? worst : r;
-      found = within < 0.0 ? found : number;
-      before = after;
+/// Samples relative to u, coordinate by coordinate.
+struct NarrowSamples {
+  const double *x, *y, *z;
+};
+
+NarrowSamples narrow(const StarSamples& s) noexcept { return {s.x.data(), s.y.data(), s.z.data()}; }
+
+struct LargestResidual {
+  template <class Lanes>
+  PTIN_LANES static double run(NarrowSamples s, const FanFrame* frame, std::size_t begin,
+                               std::size_t end, double stop_above) noexcept {
+    const FanFrame& fan = *frame;
+    const std::size_t triangles = fan.triangles();
+    const double* sx = fan.spoke_x.data();
+    const double* sy = fan.spoke_y.data();
+    const double* sz = fan.spoke_z.data();
+    const double* det = fan.determinant.data();
+    const double* inv = fan.inverse.data();
+    double worst = 0.0;
+    for (std::size_t k = begin; k < end; k += kSampleLanes) {
+      const Lanes qx = load_lanes<Lanes>(s.x + k) - fan.w_x;
+      const Lanes qy = load_lanes<Lanes>(s.y + k) - fan.w_y;
+      const Lanes qz = load_lanes<Lanes>(s.z + k) - fan.w_z;
+      Lanes block = {};
+      Lanes before = sx[0] * qy - sy[0] * qx;
+      for (std::size_t i = 0; i < triangles; ++i) {
+        const Lanes after = sx[i + 1] * qy - sy[i + 1] * qx;
+        const Lanes r = magnitude((det[i] * qz + (sz[i] * after - sz[i + 1] * before)) * inv[i]);
+        const Lanes within = smaller(before, -after);  // not negative inside of the triangle
+        block = larger(block, where_below(within, 0.0, block, r));
+        before = after;
+      }
+      worst = std::max(worst, largest_lane(block));
+      if (worst > stop_above) {
+        break;
+      }
     }
-    store_lanes(triangle + k, found);
-    store_lanes(residual + k, worst);
+    return worst;
   }
-}
+};
+
+/// Puts the fan triangle of each sample, and its residual.
+struct AssignTriangles {
+  template <class Lanes>
+  PTIN_LANES static void run(NarrowSamples s, std::size_t end, const FanFrame* frame,
+                             double* triangle, double* residual) noexcept {
+    const FanFrame& fan = *frame;
+    const std::size_t triangles = fan.triangles();
+    for (std::size_t k = 0; k < end; k += kSampleLanes) {
+      const Lanes qx = load_lanes<Lanes>(s.x + k) - fan.w_x;
+      const Lanes qy = load_lanes<Lanes>(s.y + k) - fan.w_y;
+      const Lanes qz = load_lanes<Lanes>(s.z + k) - fan.w_z;
+      Lanes found = {};
+      Lanes worst = {};
+      Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
+      for (std::size_t i = 0; i < triangles; ++i) {
+        const Lanes after = fan.spoke_x[i + 1] * qy - fan.spoke_y[i + 1] * qx;
+        const Lanes r = magnitude(
+            (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
+            fan.inverse[i]);
+        const Lanes within = smaller(before, -after);
+        worst = where_below(within, 0.0, worst, r);
+        found = where_below(within, 0.0, found, all_lanes<Lanes>(static_cast<double>(i)));
+        before = after;
+      }
+      store_lanes(triangle + k, found);
+      store_lanes(residual + k, worst);
+    }
+  }
+};
 
 /// The scalar loop: returns the residual of sample k, and gives the fan triangle that holds it.
 double residual_wide(const StarSamples& s, const FanFrame& fan, std::size_t k,
@@ -187,7 +199,7 @@ void make_spokes_of_star(const StarSamples& s, FanFrame& fan) {
 double largest_residual(const StarSamples& s, const FanFrame& fan, std::size_t begin,
                         std::size_t end, double stop_above) noexcept {
   if (!s.is_wide()) {
-    return largest_residual_narrow(s.x.data(), s.y.data(), s.z.data(), fan, begin, end, stop_above);
+    return in_lanes<LargestResidual>(narrow(s), &fan, begin, end, stop_above);
   }
   double worst = 0.0;
   double found = 0.0;
@@ -202,8 +214,7 @@ void assign_samples(const StarSamples& s, const FanFrame& fan, std::vector<doubl
   triangle.resize(s.x.size());
   residual.resize(s.x.size());
   if (!s.is_wide()) {
-    assign_narrow(s.x.data(), s.y.data(), s.z.data(), s.x.size(), fan, triangle.data(),
-                  residual.data());
+    in_lanes<AssignTriangles>(narrow(s), s.x.size(), &fan, triangle.data(), residual.data());
     return;
   }
   for (std::size_t k = 0; k < s.x.size(); ++k) {

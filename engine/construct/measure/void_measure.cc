@@ -103,6 +103,7 @@ void measure_sample(const Tile& tile, const SamplePlace& place, float reach, Voi
 }
 
 /// What kSampleLanes samples are found to cost.
+template <class Lanes>
 struct LaneMeasure {
   /// The largest residual of a sample with a height in a surface triangle that holds it; -1 where
   /// none does. 0 for a sample without a height.
@@ -110,12 +111,15 @@ struct LaneMeasure {
   Lanes charge;  ///< Charge of a sample without a height: 0 where a void triangle holds it. Else 0.
 };
 
-PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
-                                     const unsigned char* is_surface, std::size_t k) noexcept {
-  const Lanes none = Lanes{} - 1.0;
-  const Lanes qx = load_lanes(s.x.data() + k) - fan.w_x;
-  const Lanes qy = load_lanes(s.y.data() + k) - fan.w_y;
-  const Lanes qz = load_lanes(s.z.data() + k) - fan.w_z;
+template <class Lanes>
+PTIN_LANES LaneMeasure<Lanes> measure_lanes(const StarSamples& s, const FanFrame& fan,
+                                            const unsigned char* is_surface,
+                                            std::size_t k) noexcept {
+  const Lanes none = all_lanes<Lanes>(-1.0);
+  const Lanes zero = {};
+  const Lanes qx = load_lanes<Lanes>(s.x.data() + k) - fan.w_x;
+  const Lanes qy = load_lanes<Lanes>(s.y.data() + k) - fan.w_y;
+  const Lanes qz = load_lanes<Lanes>(s.z.data() + k) - fan.w_z;
   Lanes residual = none;
   Lanes in_void = none;  // below 0 where no void triangle holds it
   Lanes before = fan.spoke_x[0] * qy - fan.spoke_y[0] * qx;
@@ -126,40 +130,41 @@ PTIN_LANES LaneMeasure measure_lanes(const StarSamples& s, const FanFrame& fan,
       const Lanes r = magnitude(
           (fan.determinant[i] * qz + (fan.spoke_z[i] * after - fan.spoke_z[i + 1] * before)) *
           fan.inverse[i]);
-      residual = larger(residual, within < 0.0 ? none : r);
+      residual = larger(residual, where_below(within, 0.0, none, r));
     } else {
       in_void = larger(in_void, within);
     }
     before = after;
   }
-  const Lanes is_void = load_lanes(s.is_void.data() + k);
-  const Lanes charge = load_lanes(s.charge.data() + k);
-  LaneMeasure m;
-  m.residual = is_void > 0.0 ? Lanes{} : residual;
-  m.charge = is_void > 0.0 ? (in_void < 0.0 ? charge : Lanes{}) : Lanes{};
-  return m;
+  const Lanes voidness = -load_lanes<Lanes>(s.is_void.data() + k);  // below 0 where it has none
+  const Lanes charge = load_lanes<Lanes>(s.charge.data() + k);
+  return {where_below(voidness, 0.0, zero, residual),
+          where_below(voidness, 0.0, where_below(in_void, 0.0, charge, zero), zero)};
 }
 
 /// Measures from sample `begin` on while every sample with a height has a surface triangle and the
 /// error does not exceed `stop_above`. Returns the first place whose lanes hold a sample that has
 /// lost its surface, or s.x.size() when there is none or the error is exceeded.
-PTIN_VERSIONS
-std::size_t measure_while_found(const StarSamples& s, const FanFrame& fan,
-                                const unsigned char* is_surface, std::size_t begin,
-                                double stop_above, double& residual, double& charge) noexcept {
-  for (std::size_t k = begin; k < s.x.size(); k += kSampleLanes) {
-    const LaneMeasure m = measure_lanes(s, fan, is_surface, k);
-    if (largest_lane(-m.residual) > 0.0) {
-      return k;
+struct MeasureWhileFound {
+  template <class Lanes>
+  PTIN_LANES static std::size_t run(const StarSamples* samples, const FanFrame* fan,
+                                    const unsigned char* is_surface, std::size_t begin,
+                                    double stop_above, double* residual, double* charge) noexcept {
+    const std::size_t end = samples->x.size();
+    for (std::size_t k = begin; k < end; k += kSampleLanes) {
+      const auto m = measure_lanes<Lanes>(*samples, *fan, is_surface, k);
+      if (largest_lane(-m.residual) > 0.0) {
+        return k;
+      }
+      *residual = std::max(*residual, largest_lane(m.residual));
+      *charge = std::max(*charge, largest_lane(m.charge));
+      if (std::max(*residual, *charge) > stop_above) {
+        return end;
+      }
     }
-    residual = std::max(residual, largest_lane(m.residual));
-    charge = std::max(charge, largest_lane(m.charge));
-    if (std::max(residual, charge) > stop_above) {
-      return s.x.size();
-    }
+    return end;
   }
-  return s.x.size();
-}
+};
 
 /// Measures a block: each corner as a sample. Where the corners lie in different fan triangles, the
 /// block is charged for each of these triangles, and those between, that is of the wrong class.
@@ -215,7 +220,8 @@ void measure_samples(const Tile& tile, const StarSamples& s, FanFrame& fan, doub
   while (k < s.x.size() && measure.error <= stop_above) {
     double residual = 0.0;
     double charged = 0.0;
-    k = measure_while_found(s, fan, fan.is_surface.data(), k, stop_above, residual, charged);
+    k = in_lanes<MeasureWhileFound>(&s, &fan, fan.is_surface.data(), k, stop_above, &residual,
+                                    &charged);
     charge(measure, charged);
     measure.error = std::max(measure.error, residual);
     measure.deviation = std::max(measure.deviation, residual);
