@@ -25,10 +25,12 @@ bool is_among(const std::array<std::string_view, kCount>& names, std::string_vie
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether GDAL writes an output: a layer, GeoJSON on stdout, a raster.
-bool is_written_by_gdal(const std::string& path) {
-  return path == "-" || find_vector_format(path) != nullptr ||
-         lower_extension(path).starts_with(".tif");
+/// Whether GDAL writes an output: a layer, a drawing of isolines, a raster.
+bool is_written_by_gdal(std::string_view command, const std::string& path) {
+  const std::string extension = lower_extension(path);
+  const VectorFormat* const layer = find_vector_format(path);
+  return (layer != nullptr && layer->is_by_gdal) || extension.starts_with(".tif") ||
+         (command == "isoline" && extension == ".dxf");
 }
 
 }  // namespace
@@ -38,7 +40,7 @@ bool is_for_front(std::string_view command, const ask::Reading& reading) {
   for (const auto& [name, values] : reading.given()) {
     if (is_among(kReadByGdal, name)) return false;
     for (const std::string& value : values) {
-      const bool is_ours = name == "output" ? !is_written_by_gdal(value) : value != "-";
+      const bool is_ours = name == "output" ? !is_written_by_gdal(command, value) : value != "-";
       if (!is_ours || is_remote(value)) return false;
     }
   }
