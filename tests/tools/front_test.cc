@@ -49,7 +49,7 @@ TEST(FrontProgram, LeavesStandardInputAndWhatGdalReadsAndWritesToTheWholeProgram
       {"info", "/vsizip/a.zip/a.ptin"},
       {"locate", "a.ptin", "--points", "-"},
       {"locate", "a.ptin", "--points", "a.csv"},
-      {"unstream", "-", "-o", "a.ply"},
+      {"viewer", "-o", "site", "--stream", "-"},
       {"highest", "a.ptin", "--polygon", "POLYGON((0 0, 1 0, 1 1, 0 0))"},
       {"isoline", "a.ptin", "--level", "1", "-o", "a.fgb"},
       {"isoline", "a.ptin", "--level", "1", "-o", "a.dxf"},
@@ -96,14 +96,13 @@ TEST_F(FrontAlone, LoadsNeitherGdalNorProjNorCurl) {
 TEST_F(FrontAlone, AnswersQuestions) {
   const std::string store = testing::built(folder_, "mountains_257.tif", "m.ptin");
   const std::string out = folder_.file("out");
-  for (const std::string& arguments :
+  for (std::string told :
        {"--version", "build --help", "info FILE", "locate FILE 380000 3800000 --json",
         "highest FILE", "sight FILE 380000 3800000 2 381000 3801000 2",
         "volume FILE --level 1000 --error 50", "isoline FILE --level 1000 -o OUT.geojson",
         "isoline FILE --level 1000 -o -", "refine FILE --error 20 -o OUT.ply",
         "export FILE --error 20 -o OUT.obj", "stream FILE --error 50 -o OUT.ptins",
         "render FILE --error 50 --size 100 100 -o OUT.png"}) {
-    std::string told = arguments;
     if (const auto at = told.find("FILE"); at != std::string::npos) told.replace(at, 4, store);
     if (const auto at = told.find("OUT"); at != std::string::npos) told.replace(at, 3, out);
     const Outcome outcome = run(told);
@@ -122,19 +121,17 @@ TEST_F(FrontAlone, SaysWhichProgramIsMissing) {
   EXPECT_EQ(nlohmann::json::parse(told.out)["error"]["code"], "not_found");
 }
 
-/// A stream names its CRS by its text alone, which is known when its front was read.
+/// That a point may be meant as longitude and latitude is known by PROJ, when the answer is at hand.
 TEST(FrontProgram, BecomesTheWholeProgramInTheMiddleOfItsWork) {
   const TestFolder folder;
   const std::string store = testing::built(folder, "mountains_257.tif", "m.ptin");
-  testing::expect_done({"stream", store, "--error", "50", "-o", folder.file("m.ptins")});
-  testing::expect_done({"unstream", folder.file("m.ptins"), "-o", folder.file("here.ply")});
-  const std::vector<std::string> before = folder.names();
-  const Outcome outcome =
-      testing::spawn_ptin({"unstream", folder.file("m.ptins"), "-o", folder.file("there.ply")});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(testing::read_file(folder.file("there.ply")),
-            testing::read_file(folder.file("here.ply")));
-  EXPECT_EQ(folder.names().size(), before.size() + 1);
+  const std::vector<std::string> words = {"locate", store, "-118.3", "34.35"};
+  ASSERT_TRUE(front_answers(words));
+  const Outcome here = testing::run_ptin(words), there = testing::spawn_ptin(words);
+  EXPECT_NE(here.err.find("as longitude and latitude"), std::string::npos) << here.err;
+  EXPECT_EQ(there.status, here.status);
+  EXPECT_EQ(there.out, here.out);
+  EXPECT_EQ(there.err, here.err);
 }
 
 }  // namespace

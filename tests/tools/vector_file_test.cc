@@ -73,7 +73,10 @@ struct ReadLayer {
     feature.reset(data->GetLayer(0)->GetNextFeature());
   }
   [[nodiscard]] std::string wkt() const {
-    return feature->GetGeometryRef()->exportToWkt({wkbVariantIso, OGRWktFormat::F, 17, 17, false});
+    OGRWktOptions exact;
+    exact.variant = wkbVariantIso;
+    exact.precision = 17;
+    return feature->GetGeometryRef()->exportToWkt(exact);
   }
   std::unique_ptr<GDALDataset> data;
   std::unique_ptr<OGRFeature> feature;

@@ -13,9 +13,9 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr auto kFrontCommands = std::to_array<std::string_view>(
-    {"completion", "export", "highest", "info", "isoline", "locate", "refine", "render", "sight",
-     "stream", "unstream", "viewer", "volume"});
+constexpr auto kFrontCommands =
+    std::to_array<std::string_view>({"completion", "export", "highest", "info", "isoline", "locate",
+                                     "refine", "render", "sight", "stream", "viewer", "volume"});
 /// Parameters whose values GDAL reads.
 constexpr auto kReadByGdal =
     std::to_array<std::string_view>({"line", "pairs", "points", "polygon"});
