@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/crs/ground.h"
 
+#include <memory>
+#include <mutex>
 #include <optional>
 
 #include <geodesic.h>
@@ -11,14 +13,30 @@ namespace ptin {
 
 namespace {
 
-GeodesicLength geodesic_of(const GroundFacts& facts) {
-  geod_geodesic ellipsoid;
-  const double inverse = facts.inverse_flattening;
-  geod_init(&ellipsoid, facts.semi_major, inverse > 0 ? 1 / inverse : 0.0);
-  return [ellipsoid](MapPoint a, MapPoint b) {
+/// PROJ is not asked before a distance is.
+class Ellipsoid {
+ public:
+  explicit Ellipsoid(const GroundFacts& facts) : facts_(facts) {}
+
+  [[nodiscard]] double distance(MapPoint a, MapPoint b) {
+    std::call_once(made_, [this] {
+      const double inverse = facts_.inverse_flattening;
+      geod_init(&geodesic_, facts_.semi_major, inverse > 0 ? 1 / inverse : 0.0);
+    });
     double metres = 0.0;
-    geod_inverse(&ellipsoid, a.y, a.x, b.y, b.x, &metres, nullptr, nullptr);
+    geod_inverse(&geodesic_, a.y, a.x, b.y, b.x, &metres, nullptr, nullptr);
     return metres;
+  }
+
+ private:
+  GroundFacts facts_;
+  std::once_flag made_;
+  geod_geodesic geodesic_{};
+};
+
+GeodesicLength geodesic_of(const GroundFacts& facts) {
+  return [ellipsoid = std::make_shared<Ellipsoid>(facts)](MapPoint a, MapPoint b) {
+    return ellipsoid->distance(a, b);
   };
 }
 

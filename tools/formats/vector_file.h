@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A vector layer on its way out, through OGR: complete or absent.
+// A vector layer on its way out: complete or absent. GeoJSON is written here, all else by OGR.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include <ogr_feature.h>
-
+#include "engine/crs/crs_facts.h"
 #include "engine/geometry/affine.h"
-#include "tools/output/temporary_path.h"
-
-class GDALDataset;
-class OGRLayer;
 
 namespace ptin::tools {
 
@@ -24,6 +20,7 @@ namespace ptin::tools {
 struct VectorFormat {
   const char* extension;
   const char* driver;  ///< GDAL's name for it.
+  bool is_by_gdal = true;
 };
 /// The extensions as "`.gpkg`, ..." for help texts.
 [[nodiscard]] std::string known_vector_extensions();
@@ -37,9 +34,36 @@ struct VectorFormat {
 /// @throws Error invalid_argument
 [[noreturn]] void refuse_extension(const std::string& path, const std::string& known);
 
-/// One layer in one file. It is written in a folder beside the target, and publish() renames it.
-/// Destroyed without publish(), it removes what it wrote. With "-" features go to stdout as they
-/// come.
+/// What every geometry of a layer is; with heights where the name ends in Z.
+enum class GeometryKind : std::uint8_t {
+  kPoint,
+  kPointZ,
+  kLine,
+  kLineZ,
+  kMultiLineZ,
+  kMultiPolygon
+};
+
+/// A geometry as the paths that it consists of: a point alone, lines, closed rings.
+struct Geometry {
+  std::vector<MapPoint> points{};    ///< Those of the first path, of the second, ...
+  std::vector<double> heights{};     ///< One a point where the kind has them.
+  std::vector<std::size_t> paths{};  ///< For each path how many points it and those before it have.
+  /// For each polygon how many paths it and those before it have: its outline, then its holes.
+  std::vector<std::size_t> polygons{};
+
+  /// Ends the path that the last points belong to.
+  void end_path() { paths.push_back(points.size()); }
+};
+[[nodiscard]] Geometry point_geometry(MapPoint point);
+[[nodiscard]] Geometry point_geometry(MapPoint point, double z);
+/// A line; all of it at height `z`, unless `z` is null.
+[[nodiscard]] Geometry line_geometry(std::span<const MapPoint> points, const double* z);
+
+class LayerWriter;
+
+/// One layer in one file, which appears under its name when it is published. Destroyed without
+/// that, it removes what it wrote. With "-" features go to stdout as they come.
 class VectorFile {
  public:
   /// kInteger has 64 bits, but in a shapefile, which keeps digits, 18 digits and a sign. kFlag is 0
@@ -51,9 +75,9 @@ class VectorFile {
   };
   struct Layer {
     const char* name;
-    OGRwkbGeometryType geometry;
+    GeometryKind geometry;
     std::vector<Field> fields;
-    std::string crs_wkt;  ///< Empty: unknown.
+    CrsFacts crs;
     /// GDAL's name of a format that only some layers fit, as DXF; null: by the file's extension.
     const char* driver = nullptr;
     std::vector<std::string> creation{};  ///< Options of that driver, as "NAME=VALUE".
@@ -69,27 +93,14 @@ class VectorFile {
   ~VectorFile();
 
   /// Adds a feature; `values` in the order of the layer's fields.  @throws Error io_error
-  void add(std::unique_ptr<OGRGeometry> geometry, std::span<const Value> values);
+  void add(const Geometry& geometry, std::span<const Value> values);
 
   /// Closes the file and makes it appear under its name.
   /// @throws Error io_error, resource_exhausted, invalid_argument
   void publish();
 
  private:
-  void close();
-
-  std::string path_, target_;  ///< `path_` as given, for messages; `target_` where it leads.
-  /// For the work; none on stdout.
-  std::optional<TemporaryPath> folder_;
-  bool overwrite_;
-  std::string driver_;
-  std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> dataset_;
-  OGRLayer* layer_ = nullptr;
-  std::vector<int> fields_;  ///< Places of the layer's fields in a feature.
+  std::unique_ptr<LayerWriter> writer_;
 };
-
-/// A line through map points; all of them at height `z`, unless `z` is null.
-[[nodiscard]] std::unique_ptr<OGRGeometry> line_geometry(std::span<const MapPoint> points,
-                                                         const double* z);
 
 }  // namespace ptin::tools

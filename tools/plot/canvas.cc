@@ -5,14 +5,14 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <new>
 #include <utility>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
-#include <cpl_conv.h>
-#include <cpl_string.h>
+#include <nlohmann/json.hpp>
 
 #include "engine/error.h"
 #include "tools/facts/human.h"
@@ -60,12 +60,20 @@ cairo_status_t append_to(void* closure, const unsigned char* data, unsigned int 
   return CAIRO_STATUS_SUCCESS;
 }
 
+bool is_utf8(const std::string& text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
 /// Text that Cairo takes: it refuses everything after a single wrong byte.
-std::string readable(const std::string& text) {
-  if (CPLIsUTF8(text.data(), static_cast<int>(text.size())) != 0) return printable(text);
-  const std::unique_ptr<char, decltype(&VSIFree)> ascii(
-      CPLForceToASCII(text.data(), static_cast<int>(text.size()), '?'), VSIFree);
-  return printable(ascii.get());
+std::string readable(std::string text) {
+  const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  if (!is_utf8(text)) std::replace_if(text.begin(), text.end(), std::not_fn(is_ascii), '?');
+  return printable(text);
 }
 
 /// Throws unless the system still gives what drawing takes: the pixels, and room for Cairo's paths

@@ -267,7 +267,14 @@ std::span<const Command> commands() noexcept { return kCommands; }
 
 const char* exit_statuses() noexcept { return kExitStatuses; }
 
-int run_command_line(int argc, const char* const* argv, Context& context) {
+void start_gdal(const Command& /*command*/, Context& /*context*/) {
+  CPLSetErrorHandler(CPLQuietErrorHandler);
+  silence_proj();
+  GDALAllRegister();
+}
+
+int run_command_line(int argc, const char* const* argv, Context& context,
+                     const BeforeWork& before) {
   // Before parsing, which may fail.
   context.json =
       std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "--json"; });
@@ -279,6 +286,7 @@ int run_command_line(int argc, const char* const* argv, Context& context) {
   ParsedWords parsed = parse_words(words, context);
   if (!parsed.fault.empty()) return report_wrong_use(parsed.command, parsed.fault, json);
   if (!parsed.status) {
+    before(*parsed.command, context);
     check_inputs_are_kept(*context.reading);
     parsed.status = parsed.declared.run();
   }
@@ -292,14 +300,11 @@ int report_current_error(bool json) noexcept {
   return status_of(error.code()).exit;
 }
 
-int run_program(int argc, const char* const* argv, Context& context) {
+int run_program(int argc, const char* const* argv, Context& context, const BeforeWork& before) {
   prepare_for_refused_memory();
   try {
-    CPLSetErrorHandler(CPLQuietErrorHandler);
-    silence_proj();
-    GDALAllRegister();
     if (argc > 2) context.arguments.assign(argv + 2, argv + argc);
-    return run_command_line(argc, argv, context);
+    return run_command_line(argc, argv, context, before);
   } catch (...) {
     return report_current_error(context.json);
   }

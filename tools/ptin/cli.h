@@ -3,6 +3,8 @@
 // The command line: parsing, help, and errors as text or JSON.
 #pragma once
 
+#include <functional>
+
 #include "engine/error.h"
 #include "tools/ptin/command.h"
 
@@ -11,19 +13,26 @@ namespace ptin::tools {
 /// Every exit status in one sentence.
 [[nodiscard]] const char* exit_statuses() noexcept;
 
+/// What comes between parsing and the subcommand; nothing comes where help or a fault ends the work.
+using BeforeWork = std::function<void(const Command& command, Context& context)>;
+
+/// Lets GDAL's drivers be known, and GDAL and PROJ be silent: what GDAL says travels in our own
+/// errors, and not to stderr.
+void start_gdal(const Command& command, Context& context);
+
 /// Parses the command line and runs its subcommand. --help and --version return 0; wrong use writes
 /// a sentence to stderr and returns 2.
 /// @throws Error  what the subcommand throws
-int run_command_line(int argc, const char* const* argv, Context& context);
+int run_command_line(int argc, const char* const* argv, Context& context, const BeforeWork& before);
 
 /// Reports the exception being handled; returns its exit status. Without memory for that it ends
 /// the process as tools/refused_memory.h says. REQUIRES: called inside a catch block.
 int report_current_error(bool json) noexcept;
 
-/// The whole program but for its signals: registers GDAL's drivers, runs the command line, and
-/// reports what it throws. What GDAL says travels in our own errors, and not to stderr.
+/// The whole program but for its signals: runs the command line, and reports what it throws.
 /// @returns the exit status
-int run_program(int argc, const char* const* argv, Context& context);
+int run_program(int argc, const char* const* argv, Context& context,
+                const BeforeWork& before = start_gdal);
 
 /// Writes an error to stderr: `ptin: context: message`, or {"error": {"code", "message",
 /// "context"}}.

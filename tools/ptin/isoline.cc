@@ -8,7 +8,6 @@
 #include <optional>
 
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/mesh/link.h"
@@ -144,38 +143,29 @@ RefinedTin refine_for_bands(const IsolineRequest& request, const LevelSet& level
   return result;
 }
 
-std::unique_ptr<OGRGeometry> polygon_geometry(const BandPolygon& polygon) {
-  auto geometry = std::make_unique<OGRPolygon>();
-  for (const std::vector<MapPoint>& points : polygon.rings) {
-    auto ring = std::make_unique<OGRLinearRing>();
-    ring->setNumPoints(static_cast<int>(points.size()), FALSE);
-    for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-      ring->setPoint(i, points[static_cast<std::size_t>(i)].x,
-                     points[static_cast<std::size_t>(i)].y);
-    }
-    geometry->addRingDirectly(ring.release());
+void add_polygon(const BandPolygon& polygon, Geometry& all) {
+  for (const std::vector<MapPoint>& ring : polygon.rings) {
+    all.points.insert(all.points.end(), ring.begin(), ring.end());
+    all.end_path();
   }
-  return geometry;
+  all.polygons.push_back(all.paths.size());
 }
 
 /// Writes one feature for each band that has an area, as gdal_contour -p does.
 std::uint64_t write_bands(const std::vector<BandPolygon>& polygons, const LevelSet& levels,
                           const StoreFacts& facts, const IsolineOptions& options,
-                          const std::string& wkt) {
+                          const CrsFacts& crs) {
   const auto fields = ask::band_row_fields();
   VectorFile file(options.out.output, options.out.overwrite,
-                  {"contour", wkbMultiPolygon, ask::layer_fields_of(fields), wkt});
+                  {"contour", GeometryKind::kMultiPolygon, ask::layer_fields_of(fields), crs});
   std::uint64_t features = 0;
   for (std::size_t i = 0; i < polygons.size();) {
     const std::uint32_t band = polygons[i].band;
-    auto parts = std::make_unique<OGRMultiPolygon>();
-    for (; i < polygons.size() && polygons[i].band == band; ++i) {
-      parts->addGeometryDirectly(polygon_geometry(polygons[i]).release());
-    }
+    Geometry parts;
+    for (; i < polygons.size() && polygons[i].band == band; ++i) add_polygon(polygons[i], parts);
     const double low = band == 0 ? facts.min_height : levels.height(band - 1);
     const double high = band == levels.size() ? facts.max_height : levels.height(band);
-    file.add(std::move(parts),
-             ask::layer_values_of(fields.values_of({features, low, false, nullptr, high})));
+    file.add(parts, ask::layer_values_of(fields.values_of({features, low, false, nullptr, high})));
     ++features;
   }
   file.publish();
@@ -206,7 +196,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                     ": ask for fewer levels or a larger error, or raise --max-lines",
                 options.terrain.file);
   }
-  const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs.wkt);
+  const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs);
   if (context.json) {
     print_answer({{"output", options.out.output}}, ask::band_fields(),
                  {levels.heights(), features, polygons.size()},

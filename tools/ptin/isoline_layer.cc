@@ -16,9 +16,9 @@ VectorFile::Layer layer_of(const IsolineLayer::Options& options,
                            const ask::Fields<ask::IsolineRow>& fields) {
   using Type = VectorFile::FieldType;
   if (isoline_format_of(options.path) == IsolineFormat::kDxf)
-    return {"entities", wkbLineString25D, {{"Layer", Type::kText}}, {}, "DXF"};
-  return {"contour", options.z ? wkbLineString25D : wkbLineString, ask::layer_fields_of(fields),
-          options.crs.wkt};
+    return {"entities", GeometryKind::kLineZ, {{"Layer", Type::kText}}, {}, "DXF"};
+  return {"contour", options.z ? GeometryKind::kLineZ : GeometryKind::kLine,
+          ask::layer_fields_of(fields), options.crs};
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
@@ -59,10 +58,8 @@ int run_locate(const LocateOptions& options, const Context& context) {
     if (!asked.ids.empty()) row.id = &asked.ids[i];
     return row;
   };
-  write_rows(options.answer, form, context.json, {"points", wkbPoint, {}, crs.wkt}, fields,
-             asked.all.size(), row_at, [&](std::size_t i) {
-               return std::make_unique<OGRPoint>(asked.all[i].x, asked.all[i].y);
-             });
+  write_rows(options.answer, form, context.json, {"points", GeometryKind::kPoint, {}, crs}, fields,
+             asked.all.size(), row_at, [&](std::size_t i) { return point_geometry(asked.all[i]); });
   if (context.json) {
     print_answer({{"output", output_json(options.answer)},
                   {"points", objects_of(fields, asked.all.size(), row_at)}},

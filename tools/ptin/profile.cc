@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -60,16 +59,15 @@ struct Written {
 };
 
 /// The stretches of one line that have heights.
-std::unique_ptr<OGRGeometry> stretches_of(std::span<const ProfilePoint> points) {
-  auto stretches = std::make_unique<OGRMultiLineString>();
+Geometry stretches_of(std::span<const ProfilePoint> points) {
+  Geometry stretches;
   ask::for_each_stretch(points, [&](std::size_t first, std::size_t last) {
-    auto stretch = std::make_unique<OGRLineString>();
     for (const ProfilePoint& p : points.subspan(first, last - first + 1)) {
-      stretch->addPoint(p.position.x, p.position.y, p.height);
+      stretches.points.push_back(p.position);
+      stretches.heights.push_back(p.height);
     }
-    stretches->addGeometryDirectly(stretch.release());
+    stretches.end_path();
   });
-  stretches->set3D(TRUE);
   return stretches;
 }
 
@@ -94,7 +92,7 @@ void write_lines(const Written& written) {
     return ask::ProfileLineRow{lines[i], written.profile, written.id(lines[i].front().line)};
   };
   write_rows(written.options.answer, AnswerForm::kLayer, false,
-             {"profile", wkbMultiLineString25D, {}, written.crs.wkt},
+             {"profile", GeometryKind::kMultiLineZ, {}, written.crs},
              fields_of(written, ask::profile_line_fields()), lines.size(), row_at,
              [&](std::size_t i) { return stretches_of(lines[i]); });
 }
@@ -107,11 +105,11 @@ void write_points(const Written& written, AnswerForm form, bool json) {
   const auto geometry_at = [&](std::size_t i) {
     const ProfilePoint& p = points[i];
     const double z = std::isfinite(p.height) ? p.height : 0.0;  // the field tells what is unknown
-    return std::make_unique<OGRPoint>(p.position.x, p.position.y, z);
+    return point_geometry(p.position, z);
   };
   write_rows(
-      written.options.answer, form, json, {"stations", wkbPoint25D, {}, written.crs.wkt}, fields,
-      points.size(), [&](std::size_t i) { return written.row(i); }, geometry_at);
+      written.options.answer, form, json, {"stations", GeometryKind::kPointZ, {}, written.crs},
+      fields, points.size(), [&](std::size_t i) { return written.row(i); }, geometry_at);
 }
 
 /// Puts the profile where it is asked for.

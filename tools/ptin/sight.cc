@@ -9,7 +9,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -119,7 +118,7 @@ int run_sight(const SightOptions& options, const Context& context) {
     plot_sights(options.answer.output, options.answer.overwrite, sights,
                 {request.curvature, request.wavelength}, {unit, unit});
   } else {
-    write_rows(options.answer, form, context.json, {"lines_of_sight", wkbLineString, {}, crs.wkt},
+    write_rows(options.answer, form, context.json, {"lines_of_sight", GeometryKind::kLine, {}, crs},
                fields, results.size(), row_at, [&](std::size_t i) {
                  const std::array<MapPoint, 2> ends_of_line = {asked.all[i].a, asked.all[i].b};
                  return line_geometry(ends_of_line, nullptr);

@@ -11,7 +11,6 @@
 
 #include <gdal_priv.h>
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/construct/memory_plan.h"
 #include "engine/crs/crs_facts.h"
@@ -146,19 +145,16 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
   pending.publish();
 }
 
-void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const std::string& wkt,
+void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const CrsFacts& crs,
                     const Context& context) {
   write_rows(
-      options.out, AnswerForm::kLayer, false, {"viewshed", wkbPoint, {}, wkt}, ask::target_fields(),
-      seen.vertices.size(),
+      options.out, AnswerForm::kLayer, false, {"viewshed", GeometryKind::kPoint, {}, crs},
+      ask::target_fields(), seen.vertices.size(),
       [&](std::size_t i) -> const Viewshed::Target& {
         if (i % kStopInterval == 0) check_stop(context, options);
         return seen.vertices[i];
       },
-      [&](std::size_t i) {
-        const MapPoint& p = seen.vertices[i].position;
-        return std::make_unique<OGRPoint>(p.x, p.y);
-      });
+      [&](std::size_t i) { return point_geometry(seen.vertices[i].position); });
 }
 
 void report(const ViewshedOptions& options, const Viewshed& seen, const StoreFile& store,
@@ -206,7 +202,7 @@ int run_viewshed(const ViewshedOptions& options, const Context& context) {
   if (is_raster(options.out.output)) {
     write_raster(seen, options, crs.wkt, context);
   } else {
-    write_vertices(seen, options, crs.wkt, context);
+    write_vertices(seen, options, crs, context);
   }
   report(options, seen, terrain.store(), crs, context);
   return kExitDone;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <ogr_geometry.h>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -236,8 +235,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
     // A row for each level: a stage-storage curve.
     write_rows(
         options.answer, form, context.json, {}, ask::volume_row_fields(), told.rows.size(),
-        [&](std::size_t i) { return told.rows[i]; },
-        [](std::size_t) { return std::unique_ptr<OGRGeometry>(); });
+        [&](std::size_t i) { return told.rows[i]; }, [](std::size_t) { return Geometry(); });
   }
   if (context.json) {
     print_volumes(told, options, terrain.store(), crs, asked.transformed);

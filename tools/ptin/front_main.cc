@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The front program: `ptin` without GDAL, PROJ and libcurl. In the place of their functions it has
+// stand-ins, each of which begins the command line again in the whole program.
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "engine/error.h"
+#include "tools/error_status.h"
+#include "tools/output/temporary_path.h"
+#include "tools/ptin/cli.h"
+#include "tools/ptin/front.h"
+#include "tools/ptin/stop_on_signals.h"
+
+namespace {
+
+char** words = nullptr;
+ptin::tools::Context context;
+
+/// Beside the folder of this program, as both are installed; this program's own name where the
+/// system does not tell where it lies.
+std::string path_of_whole_program() {
+  std::error_code fault;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", fault);
+  return (here.parent_path() / PTIN_WHOLE_PROGRAM).lexically_normal().string();
+}
+
+[[noreturn]] void end(const ptin::Error& error) {
+  ptin::tools::report_error(error, context.json);
+  std::_Exit(ptin::tools::status_of(error.code()).exit);
+}
+
+}  // namespace
+
+/// Becomes the whole program, with the words of this one. What stand-ins call.
+extern "C" [[noreturn]] void ptin_hand_over() noexcept {
+  ptin::tools::remove_temporary_paths();
+  if (context.stop.stop_requested()) end({ptin::ErrorCode::cancelled, "stopped by a signal"});
+  const std::string path = path_of_whole_program();
+  ::execv(path.c_str(), words);
+  end({ptin::ErrorCode::not_found,
+       "this work needs GDAL, and the program of this version that has it cannot be started; "
+       "install ptin whole (" +
+           std::system_category().message(errno) + ")",
+       path});
+}
+
+int main(int argc, char** argv) {
+  words = argv;
+  return ptin::tools::run_program(
+      argc, argv, context, [](const ptin::tools::Command& command, ptin::tools::Context& of) {
+        if (!ptin::tools::is_for_front(command.name, *of.reading)) ptin_hand_over();
+        of.stop = ptin::tools::stop_on_signals();
+      });
+}
