@@ -37,9 +37,10 @@ struct HalfLanes {
   HalfLanes() = default;
   PTIN_LANES HalfLanes(Half low_lanes, Half high_lanes) noexcept
       : low(low_lanes), high(high_lanes) {}
-  // Implicit, as in the arithmetic of vectors and single numbers that WideLanes has; as all_lanes().
+  // Implicit, as in the arithmetic of vectors and single numbers that WideLanes has. Named four times:
+  // to add to a vector of zeros takes an addition, and loses the sign of a zero.
   PTIN_LANES HalfLanes(double all) noexcept  // NOLINT(google-explicit-constructor)
-      : low(all - Half{}), high(all - Half{}) {}
+      : low{all, all, all, all}, high(low) {}
 
   friend PTIN_LANES HalfLanes operator+(HalfLanes a, HalfLanes b) noexcept {
     return {a.low + b.low, a.high + b.high};
@@ -58,23 +59,39 @@ struct HalfLanes {
   Half low{}, high{};
 };
 
-/// The value in every lane. To take zero off keeps the sign of a zero, which to add it would not.
+/// The value in every lane.
 template <class Lanes>
-PTIN_LANES Lanes all_lanes(double value) noexcept {
-  return value - Lanes{};
+PTIN_LANES Lanes all_lanes(double value) noexcept;
+template <>
+PTIN_LANES HalfLanes all_lanes<HalfLanes>(double value) noexcept {
+  return value;
+}
+template <>
+PTIN_LANES WideLanes all_lanes<WideLanes>(double value) noexcept {
+  return WideLanes{value, value, value, value, value, value, value, value};
 }
 
-/// The lanes at `from`, which need not be aligned.
+/// The lanes at `from`, which need not be aligned. Each register is loaded by itself: a pair of them
+/// that is copied as a whole goes by way of the stack.
 template <class Lanes>
 PTIN_LANES Lanes load_lanes(const double* from) noexcept {
   Lanes lanes;
-  __builtin_memcpy(static_cast<void*>(&lanes), from, sizeof lanes);
+  __builtin_memcpy(&lanes, from, sizeof lanes);
   return lanes;
+}
+template <>
+PTIN_LANES HalfLanes load_lanes<HalfLanes>(const double* from) noexcept {
+  return {load_lanes<HalfLanes::Half>(from), load_lanes<HalfLanes::Half>(from + 4)};
 }
 
 template <class Lanes>
 PTIN_LANES void store_lanes(double* to, const Lanes& lanes) noexcept {
   __builtin_memcpy(to, &lanes, sizeof lanes);
+}
+template <>
+PTIN_LANES void store_lanes<HalfLanes>(double* to, const HalfLanes& lanes) noexcept {
+  store_lanes(to, lanes.low);
+  store_lanes(to + 4, lanes.high);
 }
 
 PTIN_LANES WideLanes smaller(WideLanes a, WideLanes b) noexcept { return b < a ? b : a; }
