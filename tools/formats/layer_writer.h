@@ -11,7 +11,7 @@
 
 namespace ptin::tools {
 
-/// What VectorFile does, of one way.
+/// A way of writing a layer, behind VectorFile, which says what the functions do.
 class LayerWriter {
  public:
   LayerWriter() = default;

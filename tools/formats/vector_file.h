@@ -34,7 +34,7 @@ struct VectorFormat {
 /// @throws Error invalid_argument
 [[noreturn]] void refuse_extension(const std::string& path, const std::string& known);
 
-/// What every geometry of a layer is; with heights where the name ends in Z.
+/// The kind of every geometry of a layer; with heights where the name ends in Z.
 enum class GeometryKind : std::uint8_t {
   kPoint,
   kPointZ,

@@ -13,7 +13,7 @@ namespace ptin::tools {
 /// Every exit status in one sentence.
 [[nodiscard]] const char* exit_statuses() noexcept;
 
-/// What comes between parsing and the subcommand; nothing comes where help or a fault ends the work.
+/// Work between parsing and the subcommand; none where help or a fault ends the work.
 using BeforeWork = std::function<void(const Command& command, Context& context)>;
 
 /// Lets GDAL's drivers be known, and GDAL and PROJ be silent: what GDAL says travels in our own

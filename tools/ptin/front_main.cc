@@ -21,17 +21,24 @@ namespace {
 char** words = nullptr;
 ptin::tools::Context context;
 
-/// Beside the folder of this program, as both are installed; this program's own name where the
-/// system does not tell where it lies.
-std::string path_of_whole_program() {
-  std::error_code fault;
-  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", fault);
-  return (here.parent_path() / PTIN_WHOLE_PROGRAM).lexically_normal().string();
-}
-
 [[noreturn]] void end(const ptin::Error& error) {
   ptin::tools::report_error(error, context.json);
   std::_Exit(ptin::tools::status_of(error.code()).exit);
+}
+
+/// The path of the whole program, by where this one lies: both are installed together. Never a path
+/// from the current folder, where anybody may have put a program.
+std::string path_of_whole_program() {
+  std::error_code fault;
+  const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", fault);
+  if (fault) {
+    end({ptin::ErrorCode::not_found,
+         "this work needs GDAL, and the program that has it lies beside this one, whose place the "
+         "system does not tell (" +
+             fault.message() + "); mount /proc, or start ptin-whole itself",
+         "/proc/self/exe"});
+  }
+  return (here.parent_path() / PTIN_WHOLE_PROGRAM).lexically_normal().string();
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace ptin::tools {
 
-/// What lies under the middle of each pixel.
+/// Heights, states and pages of the surface under the middle of each pixel.
 struct TerrainRaster {
   int width = 0;
   int height = 0;

@@ -140,7 +140,7 @@ template <typename Row, typename RowAt, typename AddGeometry>
 }
 /// The object of GeoJSON that stands for a position: {"type":"Point","coordinates":[x,y]}.
 void add_point(LongText& text, const MapPoint& p);
-/// The same object for a position in map units, in the CRS of the client.
+/// The object of a position in map units, in the CRS of the client.
 void add_point(LongText& text, MapPoint p, const Places& places);
 void add_pair(LongText& text, const MapPoint& p);
 

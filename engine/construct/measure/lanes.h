@@ -138,7 +138,7 @@ enum class LaneSet : std::uint8_t { kPlain, kAvx2, kAvx512 };
 /// Has in_lanes() use no more than `most`, in all threads. Answers do not depend on it: it is for
 /// tests and measurements.
 void use_lanes(LaneSet most) noexcept;
-/// What in_lanes() uses: at first all that the processor has.
+/// The set that in_lanes() uses: at first the last that the processor has.
 [[nodiscard]] LaneSet lanes_in_use() noexcept;
 
 namespace lanes_internal {

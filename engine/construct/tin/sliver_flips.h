@@ -11,7 +11,7 @@
 
 namespace ptin {
 
-/// What became of slivers.
+/// Counts of slivers by what became of them.
 struct SliverFlips {
   std::uint64_t mended = 0;  ///< Bad triangles that were taken away: slivers, and what flips made.
   /// Ends of edges beyond which there may be a triangle of the mesh that is not at hand. Where

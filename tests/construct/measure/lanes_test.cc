@@ -39,7 +39,7 @@ void add(Bits& bits, double v) {
   bits.push_back(std::bit_cast<std::uint64_t>(std::isnan(v) ? kNan : v));
 }
 
-/// What `work` adds with each set of lanes that the processor has, the plain one first.
+/// The results that `work` adds with each set of lanes that the processor has, the plain one first.
 template <class Work>
 std::vector<Bits> with_every_set(const Work& work) {
   std::vector<Bits> all;
@@ -86,7 +86,7 @@ struct EachOperation {
   }
 };
 
-/// The same by single numbers.
+/// The operations by single numbers.
 void by_single_numbers(const double* a, const double* b, double* out) {
   std::array<double, 8> left{};
   std::copy_n(a, 8, left.begin());
@@ -135,7 +135,7 @@ RC_GTEST_PROP(InLanes, GivesTheBitsOfSingleNumbersWithEverySet, ()) {
   }
 }
 
-/// What is measured of each fan of a star.
+/// Measures of each fan of a star.
 void measure_fans(const StarSamples& s, Bits& bits) {
   FanFrame fan;
   std::vector<double> triangle, residual;
