@@ -23,7 +23,7 @@ bool front_answers(const std::vector<std::string>& words) {
   Context context;
   const ParsedWords parsed = parse_words(words, context);
   EXPECT_EQ(parsed.fault, "");
-  return is_for_front(parsed.command->name, *context.reading);
+  return is_for_front(*parsed.command, *context.reading);
 }
 
 TEST(FrontProgram, AnswersWhatNeedsNoLibraryOfFormats) {

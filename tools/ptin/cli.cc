@@ -51,7 +51,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin info dem.ptin\n"
      "  ptin info dem.ptin --json | jq .vertices_at_tolerance\n",
-     declare_info},
+     declare_info, true},
     {"verify",
      "Check a .ptin file: checksums, structure, records, and its errors against the source",
      "Every checksum and rule of the format is looked at, and every split applied: it must find\n"
@@ -74,7 +74,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin refine dem.ptin --vertices 50000 -o small.obj --stats\n"
      "  ptin refine dem.ptin --triangles 20000 -o game.glb\n"
      "  ptin refine dem.ptin --point 387500 3792500 --clip -o triangle.2dm\n",
-     declare_refine},
+     declare_refine, true},
     {"isoline", "Write isolines (contours) as lines, or as polygons between them",
      "Lines keep higher ground on their right; a vertex at a level counts as above it. They are "
      "those of one TIN\n"
@@ -88,7 +88,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin isoline dem.ptin --interval 2 --window 385000 3790000 390000 3795000 -o site.dxf\n"
      "  ptin isoline dem.ptin --level 0 --window 385000 3790000 390000 3795000 -o - | jq "
      ".features\n",
-     declare_isoline},
+     declare_isoline, true},
     {"export", "Write the whole TIN, or a raster of it, however large",
      "Works through the terrain part by part within --memory; the output does not depend on the "
      "parts.\n"
@@ -104,7 +104,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin export dem.ptin --error 5 --pixel-size 90m -o coarse.tif\n"
      "  ptin export dem.ptin --what slope --slope-unit percent -o slope.tif\n"
      "  ptin export dem.ptin --window 385000 3790000 390000 3795000 --format COG -o valley.tif\n",
-     declare_export},
+     declare_export, true},
     {"stream", "Send a terrain progressively, the most important first",
      "T0, then vertex splits in frames of which any first few are a valid TIN with a certified "
      "error; a receiver may stop\n"
@@ -116,7 +116,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin stream dem.ptin --window 385000 3790000 390000 3795000 --have-error 5 -o more.pts\n"
      "  ptin stream dem.ptin --error 1 --have-error 1 --have-splits 20000 -o rest.pts\n"
      "  ptin stream dem.ptin --level 500 1000 -o isolines.pts\n",
-     declare_stream},
+     declare_stream, true},
     {"unstream", "Receive what `ptin stream` sent, cut off anywhere or not, as a mesh",
      "Several streams follow each other: the first begins with T0, each other goes on from "
      "there.\n\n"
@@ -126,7 +126,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin unstream dem.pts more.pts -o dem.ply --json\n"
      "  ptin unstream isolines.pts --level 500 1000 -o contours.gpkg\n"
      "  ptin unstream isolines.pts --level 500 --steps -o arriving.gpkg\n",
-     declare_unstream},
+     declare_unstream, true},
     {"viewer", "Write a web page that shows a stream and refines it while it arrives",
      "The page needs no program on the host: any that gives out files will do. It opens the stream "
      "beside it, or one that\n"
@@ -134,14 +134,14 @@ constexpr auto kCommands = std::to_array<Command>({
      "Examples:\n"
      "  ptin stream dem.ptin -o dem.ptins && ptin viewer -o site --stream dem.ptins\n"
      "  ptin viewer -o site && python3 -m http.server --directory site\n",
-     declare_viewer},
+     declare_viewer, true},
     {"highest", "Find the highest or lowest point of a window or a polygon",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
      "Examples:\n"
      "  ptin highest dem.ptin\n"
      "  ptin highest dem.ptin --window 385000 3790000 390000 3795000 -k 10 --json\n"
      "  ptin highest dem.ptin --polygon park.gpkg --lowest\n",
-     declare_highest},
+     declare_highest, true},
     {"volume", "Measure cut and fill against a level, or between two terrains",
      "Cut is what lies above the level or above OTHER, fill what lies below, net is cut less fill. "
      "Integrals over the\n"
@@ -155,7 +155,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin volume before.ptin --against after.ptin --polygon pit.gpkg\n"
      "  ptin volume lake.ptin --level 412.5 --window 385000 3790000 390000 3795000 --error 2 "
      "--json\n",
-     declare_volume},
+     declare_volume, true},
     {"locate", "Tell the triangle and the height at points",
      "Three answers, told apart: a height (surface), void, outside. None is an error.\n\n"
      "Examples:\n"
@@ -164,7 +164,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin locate dem.ptin --points tour.gpx --layer waypoints --error 5\n"
      "  ptin locate dem.ptin --points wells.gpkg --vertices 20000\n"
      "  cut -d, -f2,3 track.csv | ptin locate dem.ptin --points - > heights.csv\n",
-     declare_locate},
+     declare_locate, true},
     {"profile", "Tell the height along a line, with a break at every edge crossed",
      "Examples:\n"
      "  ptin profile dem.ptin --line 'LINESTRING(385000 3790000, 390000 3795000)'\n"
@@ -181,7 +181,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin sight dem.ptin 385000 3790000 20 390000 3795000 30 --frequency 5.8GHz -o link.png\n"
      "  ptin sight dem.ptin --pairs links.csv --frequency 5.8GHz > links_seen.csv\n"
      "  ptin sight dem.ptin --pairs - --verdict --curvature 0 < pairs.txt\n",
-     declare_sight},
+     declare_sight, true},
     {"viewshed", "Find what one observer sees",
      "A target is hidden when some point of the straight line to it lies strictly below the "
      "surface; "
@@ -197,7 +197,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin render dem.ptin --error 20 --wireframe -o coarse.png\n"
      "  ptin render dem.ptin --window 385000 3790000 390000 3795000 --pages --size 1600 1200 -o "
      "pages.png\n",
-     declare_render},
+     declare_render, true},
     {"bench", "Measure how fast this disk answers questions, and which way of reading is best",
      "Points, sight lines, windows and isolines at seeded places, cold (dropped from the page "
      "cache) and warm: announced\n"
@@ -227,7 +227,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "Example:\n"
      "  ptin completion bash > ~/.local/share/bash-completion/completions/ptin\n"
      "  ptin completion man | man -l -\n",
-     declare_completion},
+     declare_completion, true},
 });
 
 constexpr const char* kExitStatuses =

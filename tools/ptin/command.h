@@ -55,6 +55,8 @@ struct Command {
   const char* examples;  ///< Ends --help.
   /// `context` outlives what is declared.
   Declared (*declare)(Context& context);
+  /// Whether most of its work needs nothing of GDAL, PROJ and libcurl (tools/ptin/front.h).
+  bool is_for_front = false;
 };
 
 /// Every subcommand, in the order of --help. From it come parsing, help and completion.

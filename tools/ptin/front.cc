@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "engine/remote/remote_file.h"
 #include "tools/formats/vector_file.h"
@@ -13,17 +14,9 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr auto kFrontCommands =
-    std::to_array<std::string_view>({"completion", "export", "highest", "info", "isoline", "locate",
-                                     "refine", "render", "sight", "stream", "viewer", "volume"});
 /// Parameters whose values GDAL reads.
 constexpr auto kReadByGdal =
     std::to_array<std::string_view>({"line", "pairs", "points", "polygon"});
-
-template <std::size_t kCount>
-bool is_among(const std::array<std::string_view, kCount>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// Whether GDAL writes an output: a layer, a drawing of isolines, a raster.
 bool is_written_by_gdal(std::string_view command, const std::string& path) {
@@ -35,12 +28,13 @@ bool is_written_by_gdal(std::string_view command, const std::string& path) {
 
 }  // namespace
 
-bool is_for_front(std::string_view command, const ask::Reading& reading) {
-  if (!is_among(kFrontCommands, command)) return false;
+bool is_for_front(const Command& command, const ask::Reading& reading) {
+  if (!command.is_for_front) return false;
   for (const auto& [name, values] : reading.given()) {
-    if (is_among(kReadByGdal, name)) return false;
+    if (std::find(kReadByGdal.begin(), kReadByGdal.end(), name) != kReadByGdal.end()) return false;
     for (const std::string& value : values) {
-      const bool is_ours = name == "output" ? !is_written_by_gdal(command, value) : value != "-";
+      const bool is_ours =
+          name == "output" ? !is_written_by_gdal(command.name, value) : value != "-";
       if (!is_ours || is_remote(value)) return false;
     }
   }

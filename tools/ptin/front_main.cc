@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   words = argv;
   return ptin::tools::run_program(
       argc, argv, context, [](const ptin::tools::Command& command, ptin::tools::Context& of) {
-        if (!ptin::tools::is_for_front(command.name, *of.reading)) ptin_hand_over();
+        if (!ptin::tools::is_for_front(command, *of.reading)) ptin_hand_over();
         of.stop = ptin::tools::stop_on_signals();
       });
 }
