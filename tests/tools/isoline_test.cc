@@ -199,6 +199,35 @@ TEST(IsolineProgram, WritesGeoJsonToStdout) {
   EXPECT_EQ(answer.at("features").at(0).at("properties").at("elev"), 1000.0);
 }
 
+/// GeoJSON names a CRS by its code or not at all; other formats keep its definition.
+TEST(IsolineProgram, WarnsWhereGeoJsonLosesTheCrs) {
+  const TestFolder folder;
+  const std::string store = folder.file("m.ptin");
+  BuildOptions options;
+  options.a_srs = "+proj=laea +lat_0=34 +lon_0=-118 +units=m";
+  testing::RasterRecipe recipe;
+  recipe.value = testing::hills;
+  testing::make_raster(folder.file("m.tif"), recipe);
+  testing::build_terrain(folder.file("m.tif"), store, options);
+  const auto told = [&](const std::string& out, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"isoline", store, "--interval", "10", "-o", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = run_ptin(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.err;
+  };
+  const std::string lost = "this one has none; .gpkg and .fgb keep it";
+  EXPECT_NE(told(folder.file("a.geojson")).find(lost), std::string::npos);
+  EXPECT_NE(told(folder.file("b.geojson"), {"--polygons"}).find(lost), std::string::npos);
+  EXPECT_NE(told("-").find("the GeoJSON does not say its CRS"), std::string::npos);
+  EXPECT_EQ(told(folder.file("a.gpkg")), "");
+  EXPECT_EQ(told(folder.file("a.xml")), "");
+  EXPECT_EQ(told(folder.file("c.geojson"), {"-q"}), "");
+  const Outcome points =
+      run_ptin({"locate", store, "500100", "3999900", "-o", folder.file("p.json")});
+  EXPECT_NE(points.err.find(lost), std::string::npos) << points.err;
+}
+
 TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   const Mountains m;
   const std::string out = m.folder.file("x.gpkg");

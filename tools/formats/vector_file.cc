@@ -36,6 +36,10 @@ const VectorFormat* find_vector_format(const std::string& path) {
   return nullptr;
 }
 
+bool is_geojson(const std::string& path) {
+  return path == "-" || find_vector_format(path) == &kGeoJson;
+}
+
 void refuse_extension(const std::string& path, const std::string& known) {
   const std::string extension = lower_extension(path);
   const std::string what = extension.empty() ? std::string("the name has no extension")

@@ -26,6 +26,8 @@ struct VectorFormat {
 [[nodiscard]] std::string known_vector_extensions();
 /// The format of a file by its extension; null when it is none of them.
 [[nodiscard]] const VectorFormat* find_vector_format(const std::string& path);
+/// True for GeoJSON, which "-" on stdout is too.
+[[nodiscard]] bool is_geojson(const std::string& path);
 /// The format of an output; "-" is GeoJSON on stdout.
 /// @throws Error invalid_argument  unknown extension
 [[nodiscard]] const VectorFormat& vector_format_of(const std::string& path);

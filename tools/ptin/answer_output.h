@@ -37,26 +37,27 @@ enum class AnswerForm : std::uint8_t {
 /// @throws Error as OutputFile, as write_to_stdout()
 void write_csv(const OutputOptions& options, AnswerForm form, bool json, const std::string& text);
 
-/// Writes rows as a layer or as CSV, where the form asks for one; with `json` stdout is taken.
+/// Writes rows as a layer or as CSV, where the form asks for one; with --json stdout is taken.
 /// @param all   The fields, of which the form has some.
 /// @param rows  How many there are. `row_at` and `geometry_at` make one by its number.
 /// @throws Error as VectorFile, as write_csv()
 template <typename Row, typename RowAt, typename GeometryAt>
-void write_rows(const OutputOptions& out, AnswerForm form, bool json, VectorFile::Layer layer,
-                const ask::Fields<Row>& all, std::size_t rows, const RowAt& row_at,
-                const GeometryAt& geometry_at) {
+void write_rows(const OutputOptions& out, AnswerForm form, const Context& context,
+                VectorFile::Layer layer, const ask::Fields<Row>& all, std::size_t rows,
+                const RowAt& row_at, const GeometryAt& geometry_at) {
   if (form == AnswerForm::kLayer) {
     const auto fields = all.told(ask::Told::kProgram & ask::Told::kFeature);
     layer.fields = ask::layer_fields_of(fields);
+    warn_of_unnamed_crs(out, layer.crs, context);
     VectorFile file(out.output, out.overwrite, layer);
     for (std::size_t i = 0; i < rows; ++i) {
       file.add(geometry_at(i), ask::layer_values_of(fields.values_of(row_at(i))));
     }
     file.publish();
-  } else if (form == AnswerForm::kCsv || !json) {
+  } else if (form == AnswerForm::kCsv || !context.json) {
     ask::LongText text;
     ask::add_csv(text, all.told(ask::Told::kProgram & ask::Told::kTableRow), rows, row_at);
-    write_csv(out, form, json, text.take());
+    write_csv(out, form, context.json, text.take());
   }
 }
 /// Rows as objects.

@@ -84,6 +84,7 @@ int run_lines(const IsolineOptions& options, const IsolineRequest& request,
   const Isolines lines = asked.terrain.isolines(request, options.by);
   const IndexLevels index{options.question.levels.interval.value_or(0.0),
                           options.question.levels.base};
+  warn_of_unnamed_crs(options.out, asked.crs, context);
   IsolineLayer layer({options.out.output, options.out.overwrite, options.z, false, asked.crs, index,
                       context.stop});
   const IsolineLayer::Written written = layer.add(lines);
@@ -196,6 +197,7 @@ int run_polygons(const IsolineOptions& options, const IsolineRequest& request,
                     ": ask for fewer levels or a larger error, or raise --max-lines",
                 options.terrain.file);
   }
+  warn_of_unnamed_crs(options.out, asked.crs, context);
   const std::uint64_t features = write_bands(polygons, levels, facts, options, asked.crs);
   if (context.json) {
     print_answer({{"output", options.out.output}}, ask::band_fields(),

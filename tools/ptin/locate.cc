@@ -58,7 +58,7 @@ int run_locate(const LocateOptions& options, const Context& context) {
     if (!asked.ids.empty()) row.id = &asked.ids[i];
     return row;
   };
-  write_rows(options.answer, form, context.json, {"points", GeometryKind::kPoint, {}, crs}, fields,
+  write_rows(options.answer, form, context, {"points", GeometryKind::kPoint, {}, crs}, fields,
              asked.all.size(), row_at, [&](std::size_t i) { return point_geometry(asked.all[i]); });
   if (context.json) {
     print_answer({{"output", output_json(options.answer)},
@@ -73,7 +73,8 @@ void add_question(ask::Parameters& rows, LocateOptions& options) {
   rows.add("x_y", &options.point, "X Y", "A point").spelled("X_Y").in(ask::Unit::kMap).values(2, 2);
   rows.add("points", &options.points, "FILE",
            "Points: text with x and y in the first columns, or in those that a header names so (- "
-           "reads standard input), or a vector file (transformed to the terrain's CRS)");
+           "reads standard input), or a vector file (transformed to the terrain's CRS)")
+      .read_by_gdal();
   add_input_choice(rows, options.choice, "points", "x, y");
   ask::add_question(rows, options.request);
   ask::add_by(rows, options.by);

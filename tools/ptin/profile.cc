@@ -86,19 +86,19 @@ ask::Fields<Row> fields_of(const Written& written, const ask::Fields<Row>& all) 
 }
 
 /// Writes the profile as a layer, a feature for each line.
-void write_lines(const Written& written) {
+void write_lines(const Written& written, const Context& context) {
   const std::vector<std::span<const ProfilePoint>> lines = lines_of(written.profile);
   const auto row_at = [&](std::size_t i) {
     return ask::ProfileLineRow{lines[i], written.profile, written.id(lines[i].front().line)};
   };
-  write_rows(written.options.answer, AnswerForm::kLayer, false,
+  write_rows(written.options.answer, AnswerForm::kLayer, context,
              {"profile", GeometryKind::kMultiLineZ, {}, written.crs},
              fields_of(written, ask::profile_line_fields()), lines.size(), row_at,
              [&](std::size_t i) { return stretches_of(lines[i]); });
 }
 
 /// Writes points as CSV, or as a layer.
-void write_points(const Written& written, AnswerForm form, bool json) {
+void write_points(const Written& written, AnswerForm form, const Context& context) {
   auto fields = fields_of(written, ask::profile_fields());
   if (!written.options.has_stations()) fields = fields.without("station");
   const std::vector<ProfilePoint>& points = written.profile.points;
@@ -108,21 +108,21 @@ void write_points(const Written& written, AnswerForm form, bool json) {
     return point_geometry(p.position, z);
   };
   write_rows(
-      written.options.answer, form, json, {"stations", GeometryKind::kPointZ, {}, written.crs},
+      written.options.answer, form, context, {"stations", GeometryKind::kPointZ, {}, written.crs},
       fields, points.size(), [&](std::size_t i) { return written.row(i); }, geometry_at);
 }
 
 /// Puts the profile where it is asked for.
-void write_profile(const Written& written, bool json) {
+void write_profile(const Written& written, const Context& context) {
   const OutputOptions& answer = written.options.answer;
-  const AnswerForm form = form_of(answer, json, {.plot = true});
+  const AnswerForm form = form_of(answer, context.json, {.plot = true});
   if (form == AnswerForm::kPlot) {
     plot_profile(answer.output, answer.overwrite, written.profile, written.ids,
                  plot_units_of(written.crs));
   } else if (form == AnswerForm::kLayer && !written.options.stations_only) {
-    write_lines(written);
+    write_lines(written, context);
   } else {
-    write_points(written, form, json);
+    write_points(written, form, context);
   }
 }
 
@@ -159,7 +159,7 @@ int run_profile(const ProfileOptions& options, const Context& context) {
     std::erase_if(result.points, [](const ProfilePoint& p) { return !p.is_station; });
   }
   const Written written{options, result, asked.ids, crs};
-  write_profile(written, context.json);
+  write_profile(written, context);
   if (!context.json) return kExitDone;
   print_answer({{"output", output_json(options.answer)},
                 {"points", objects_of(ask::profile_fields(), result.points.size(),
@@ -175,6 +175,7 @@ void add_question(ask::Parameters& rows, ProfileOptions& options) {
   rows.add("line", &options.line, "WKT_OR_FILE",
            "Lines: WKT (LINESTRING, MULTILINESTRING), or a file with it, or a vector file "
            "(transformed to the terrain's CRS)")
+      .read_by_gdal()
       .required_at(ask::Door::kBoth);
   add_input_choice(rows, options.choice, "line", "");
   ask::add_question(rows, options.request);

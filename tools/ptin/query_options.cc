@@ -14,6 +14,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
+#include "tools/formats/vector_file.h"
 #include "tools/output/output_file.h"
 #include "tools/output/standard_output.h"
 #include "tools/ptin/source_counts.h"
@@ -157,6 +158,15 @@ void warn_of_outside(std::span<const MapPoint> places, const std::string& what,
   if (!why) return;
   std::fprintf(stderr, "ptin: warning: no %s lies on the terrain, which has %s\n", what.c_str(),
                why->c_str());
+}
+
+void warn_of_unnamed_crs(const OutputOptions& out, const CrsFacts& crs, const Context& context) {
+  if (context.quiet || context.json || crs.wkt.empty() || !crs.code.empty()) return;
+  if (!is_geojson(out.output)) return;
+  std::fprintf(stderr,
+               "ptin: warning: %s does not say its CRS, which is %s: GeoJSON names a CRS by its "
+               "code, and this one has none; .gpkg and .fgb keep it\n",
+               out.output == "-" ? "the GeoJSON" : out.output.c_str(), crs.name.c_str());
 }
 
 QueryLimits limits_of(std::optional<std::uint64_t> memory, const Context& context) {

@@ -70,6 +70,10 @@ struct AskedRegion {
 [[nodiscard]] AskedRegion region_of(const ask::RegionText& text, const StoreFacts& facts,
                                     const CrsFacts& crs, const Context& context);
 
+/// Warns where a layer that is GeoJSON loses the CRS, which GeoJSON names by a code or not at all.
+/// Silent with -q and --json.
+void warn_of_unnamed_crs(const OutputOptions& out, const CrsFacts& crs, const Context& context);
+
 /// Says on stderr what was transformed, and what bound holds. Silent with -q and --json.
 /// @param what  "the lines", "the polygon".
 void tell_transformed(const std::optional<Transformed>& transformed, const std::string& what,

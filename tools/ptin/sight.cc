@@ -118,7 +118,7 @@ int run_sight(const SightOptions& options, const Context& context) {
     plot_sights(options.answer.output, options.answer.overwrite, sights,
                 {request.curvature, request.wavelength}, {unit, unit});
   } else {
-    write_rows(options.answer, form, context.json, {"lines_of_sight", GeometryKind::kLine, {}, crs},
+    write_rows(options.answer, form, context, {"lines_of_sight", GeometryKind::kLine, {}, crs},
                fields, results.size(), row_at, [&](std::size_t i) {
                  const std::array<MapPoint, 2> ends_of_line = {asked.all[i].a, asked.all[i].b};
                  return line_geometry(ends_of_line, nullptr);
@@ -144,7 +144,8 @@ void add_question(ask::Parameters& rows, SightOptions& options) {
       .values(6, 6);
   rows.add("pairs", &options.pairs, "FILE",
            "Text with such six numbers in each row, or with a header that names x1 y1 h1 x2 y2 h2 "
-           "(- reads standard input), or a vector file of lines with heights at their ends");
+           "(- reads standard input), or a vector file of lines with heights at their ends")
+      .read_by_gdal();
   add_input_choice(rows, options.choice, "pairs", "x1, y1, h1, x2, y2, h2");
   ask::add_question(rows, options.question);
   ask::add_by(rows, options.by);

@@ -148,7 +148,7 @@ void write_raster(const Viewshed& seen, const ViewshedOptions& options, const st
 void write_vertices(const Viewshed& seen, const ViewshedOptions& options, const CrsFacts& crs,
                     const Context& context) {
   write_rows(
-      options.out, AnswerForm::kLayer, false, {"viewshed", GeometryKind::kPoint, {}, crs},
+      options.out, AnswerForm::kLayer, context, {"viewshed", GeometryKind::kPoint, {}, crs},
       ask::target_fields(), seen.vertices.size(),
       [&](std::size_t i) -> const Viewshed::Target& {
         if (i % kStopInterval == 0) check_stop(context, options);

@@ -234,7 +234,7 @@ int run_volume(const VolumeOptions& options, const Context& context) {
   } else if (is_table) {
     // A row for each level: a stage-storage curve.
     write_rows(
-        options.answer, form, context.json, {}, ask::volume_row_fields(), told.rows.size(),
+        options.answer, form, context, {}, ask::volume_row_fields(), told.rows.size(),
         [&](std::size_t i) { return told.rows[i]; }, [](std::size_t) { return Geometry(); });
   }
   if (context.json) {
