@@ -2,6 +2,7 @@
 #include "tools/ptin/front.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <sys/wait.h>
 
 #include "tests/tools/program.h"
+#include "tools/output/standard_output.h"
 #include "tools/ptin/command_line.h"
 
 namespace ptin::tools {
@@ -119,6 +121,17 @@ TEST_F(FrontAlone, SaysWhichProgramIsMissing) {
   const Outcome told = run("build none.tif -o none.ptin --json");
   EXPECT_EQ(told.status, 3);
   EXPECT_EQ(nlohmann::json::parse(told.out)["error"]["code"], "not_found");
+}
+
+/// What left the buffer cannot be taken back, so the whole program would write it once more.
+TEST(FrontProgram, KnowsWhetherSomeOfTheAnswerLeft) {
+  const auto left_after = [](bool is_flushed) {
+    write_to_stdout("a part of the answer");
+    if (is_flushed) finish_stdout();
+    std::_Exit(has_left_stdout() ? 1 : 0);
+  };
+  EXPECT_EXIT(left_after(false), ::testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(left_after(true), ::testing::ExitedWithCode(1), "");
 }
 
 /// That a point may be meant as longitude and latitude is known by PROJ, when the answer is at hand.

@@ -60,6 +60,7 @@ void add_region(Parameters& rows, RegionText& region, Door doors) {
   add_window(rows, region, doors);
   rows.add("polygon", &region.polygon, "WKT_OR_FILE", "A polygon: WKT, or a file that holds it")
       .excluding("window")
+      .read_by_gdal()
       .at(Door::kProgram);
 }
 

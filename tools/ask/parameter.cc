@@ -223,6 +223,7 @@ void Reading::put(const Parameter& p, std::span<const std::string> values, Value
 
 void Reading::take(const Parameter& p, std::span<const std::string> values) {
   given_[std::string(p.name)].assign(values.begin(), values.end());
+  is_by_gdal_ = is_by_gdal_ || p.is_by_gdal;
   const bool is_window = std::holds_alternative<std::optional<Window>*>(p.into);
   if (is_list(p) && !is_window &&
       (values.size() < p.least_values || values.size() > p.most_values)) {

@@ -69,7 +69,8 @@ struct Parameter {
   Door required = Door::kNone;    ///< Where it must be given.
   std::string default_value{};    ///< What it is where it is not given, to be told; empty: nothing.
   Door doors = Door::kBoth;
-  bool is_json = false;  ///< In a body over HTTP other values of JSON than text mean something.
+  bool is_by_gdal = false;  ///< On the command line GDAL reads what it names.
+  bool is_json = false;     ///< In a body over HTTP other values of JSON than text mean something.
   std::string_view example{};  ///< Over HTTP; empty: none.
   std::string help{};          ///< For people, without the unit.
   std::string_view hint{};     ///< Behind a refusal: what may have been meant.
@@ -93,6 +94,7 @@ struct Parameter {
   Parameter& with_default();
   Parameter& at(Door where) { return doors = where, *this; }
   Parameter& as_json() { return is_json = true, *this; }
+  Parameter& read_by_gdal() { return is_by_gdal = true, *this; }
   Parameter& repeated() { return repeats = true, *this; }
   Parameter& split_at_commas() { return splits_at_commas = true, *this; }
   Parameter& like(std::string_view value) { return example = value, *this; }
@@ -140,6 +142,8 @@ class Reading {
   void take(const Parameter& parameter, std::span<const std::string> values);
   /// What was given, by the names of the parameters.
   [[nodiscard]] const auto& given() const noexcept { return given_; }
+  /// Whether GDAL reads some of it.
+  [[nodiscard]] bool is_by_gdal() const noexcept { return is_by_gdal_; }
   /// Looks at what is missing, and at what was given together, of the parameters of the door.
   void check(std::span<const Parameter> parameters) const;
   /// Whether something waits for the terrain's units.
@@ -163,6 +167,7 @@ class Reading {
 
   Door door_;
   std::map<std::string, std::vector<std::string>, std::less<>> given_;
+  bool is_by_gdal_ = false;
   std::vector<Waiting> waiting_;
 };
 

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include <stdio_ext.h>
 #include <unistd.h>
 
 #include "engine/error.h"
@@ -11,6 +12,8 @@
 namespace ptin::tools {
 
 namespace {
+
+std::size_t bytes_to_stdout = 0;  ///< Bytes, by write_to_stdout().
 
 [[noreturn]] void throw_lost(int reason) {
   std::clearerr(stdout);
@@ -22,7 +25,10 @@ namespace {
 void write_to_stdout(std::string_view text) {
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) throw_lost(errno);
+  bytes_to_stdout += text.size();
 }
+
+bool has_left_stdout() noexcept { return bytes_to_stdout > ::__fpending(stdout); }
 
 void finish_stdout() {
   errno = 0;

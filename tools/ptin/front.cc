@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/front.h"
 
-#include <algorithm>
-#include <array>
 #include <string>
 #include <string_view>
 
@@ -13,10 +11,6 @@
 namespace ptin::tools {
 
 namespace {
-
-/// Parameters whose values GDAL reads.
-constexpr auto kReadByGdal =
-    std::to_array<std::string_view>({"line", "pairs", "points", "polygon"});
 
 /// Whether GDAL writes an output: a layer, a drawing of isolines, a raster.
 bool is_written_by_gdal(std::string_view command, const std::string& path) {
@@ -29,9 +23,8 @@ bool is_written_by_gdal(std::string_view command, const std::string& path) {
 }  // namespace
 
 bool is_for_front(const Command& command, const ask::Reading& reading) {
-  if (!command.is_for_front) return false;
+  if (!command.is_for_front || reading.is_by_gdal()) return false;
   for (const auto& [name, values] : reading.given()) {
-    if (std::find(kReadByGdal.begin(), kReadByGdal.end(), name) != kReadByGdal.end()) return false;
     for (const std::string& value : values) {
       const bool is_ours =
           name == "output" ? !is_written_by_gdal(command.name, value) : value != "-";

@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "tools/error_status.h"
+#include "tools/output/standard_output.h"
 #include "tools/output/temporary_path.h"
 #include "tools/ptin/cli.h"
 #include "tools/ptin/front.h"
@@ -47,6 +48,12 @@ std::string path_of_whole_program() {
 extern "C" [[noreturn]] void ptin_hand_over() noexcept {
   ptin::tools::remove_temporary_paths();
   if (context.stop.stop_requested()) end({ptin::ErrorCode::cancelled, "stopped by a signal"});
+  if (ptin::tools::has_left_stdout()) {  // The whole program would write it once more.
+    end({ptin::ErrorCode::io_error,
+         "a part of the answer was written when GDAL was needed; write to a file with -o, or start "
+         "ptin-whole itself",
+         "standard output"});
+  }
   const std::string path = path_of_whole_program();
   ::execv(path.c_str(), words);
   end({ptin::ErrorCode::not_found,
