@@ -2,6 +2,7 @@
 #include "tests/tools/small_terrains.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -91,14 +92,32 @@ std::string source_of(const TestFolder& folder, const std::string& name) {
 std::string source_of(const TestFolder&, const std::string& name) { return test_data(name); }
 #endif
 
+/// The folder where the suites of a run share the stores of this program: named by the program's own
+/// time, so that what another version built is not taken. A suite that runs alone has its own.
+std::filesystem::path folder_of_stores() {
+  static const TestFolder own;
+  const char* const shared = std::getenv("PTIN_TEST_STORES");
+  if (shared == nullptr) return own.path();
+  namespace fs = std::filesystem;
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  const auto time = fs::last_write_time(program).time_since_epoch().count();
+  const fs::path folder =
+      fs::path(shared) / (program.filename().string() + "_" + std::to_string(time));
+  fs::create_directories(folder);
+  return folder;
+}
+
 }  // namespace
 
 std::string built(const TestFolder& folder, const std::string& name,
                   const std::string& store_name) {
-  static const TestFolder stores;
-  const std::string store = stores.file(name + ".ptin");
+  static const std::filesystem::path stores = folder_of_stores();
+  const std::filesystem::path store = stores / (name + ".ptin");
   if (!std::filesystem::exists(store)) {
-    build_terrain(source_of(stores, name), store);
+    const TestFolder building(stores);  // Of two suites that build it at once the later one wins.
+    const std::string fresh = building.file(name + ".ptin");
+    build_terrain(source_of(building, name), fresh);
+    std::filesystem::rename(fresh, store);
   }
   const std::string path = folder.file(store_name);
   std::filesystem::copy_file(store, path, std::filesystem::copy_options::overwrite_existing);

@@ -41,7 +41,7 @@ void make_raster(const std::string& path, const RasterRecipe& recipe);
 
 /// A small real terrain of tests/data.
 [[nodiscard]] std::string test_data(const std::string& name);
-/// The path of the store of such a terrain in `folder`. It is built once a process, and copied.
+/// The path of the store of such a terrain in `folder`. It is built once a run of ctest's, or once a process, and copied.
 /// Under the thread sanitizer it is of the terrain's north-western quarter.
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name);
 [[nodiscard]] std::string built(const TestFolder& folder, const std::string& name,
