@@ -64,10 +64,11 @@ void keep_freed_memory(const BuildPlan& plan) {
 }
 
 std::function<void()> keep_freed_memory_of_questions(std::uint64_t kept) {
-  // Each thread would else keep memory of its own that no other one gets.
-  mallopt(M_ARENA_MAX, 2);
+  // Each thread would else keep memory of its own that no other one gets, and of a further arena
+  // malloc_trim() never gives back what is free at the end.
+  mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::clamp(kept / 2, kMib, kMostBlock)));
-  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::clamp(kept / 2, 4 * kMib, 1024 * kMib)));
+  mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::clamp(kept, 4 * kMib, 1024 * kMib)));
   const std::uint64_t now = resident_bytes().value_or(0);
   const std::uint64_t program = now - std::min(now, allocated_bytes());
   return [kept, program] {

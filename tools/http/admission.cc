@@ -152,8 +152,8 @@ struct Admission::Shared {
     return lacks_memory ? WaitsFor::kMemory : WaitsFor::kTurn;
   }
   /// Notes the end of a task. Whether it is time to look at what is kept of freed memory.
-  [[nodiscard]] bool is_to_bound(std::uint64_t memory) {
-    ended += memory;
+  [[nodiscard]] bool is_to_bound(std::uint64_t given_back) {
+    ended += given_back;
     if (!bounds || sizes.memory.kept == 0 || ended < sizes.memory.kept / 2) return false;
     ended = 0;
     return true;
