@@ -69,6 +69,7 @@ std::function<void()> keep_freed_memory_of_questions(std::uint64_t kept) {
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, static_cast<int>(std::clamp(kept / 2, kMib, kMostBlock)));
   mallopt(M_TRIM_THRESHOLD, static_cast<int>(std::clamp(kept, 4 * kMib, 1024 * kMib)));
+  give_back_freed_memory();  // What is not allocated then is the program's own.
   const std::uint64_t now = resident_bytes().value_or(0);
   const std::uint64_t program = now - std::min(now, allocated_bytes());
   return [kept, program] {

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -111,28 +112,26 @@ TEST_F(KeptMemory, AServiceAtRestKeepsNothing) {
       << resident_bytes(service.process()) << " after " << before;
 }
 
-/// Blocks of a megabyte between small ones that stay, so that none is at the end of what malloc has.
+/// Blocks of a megabyte.
 class Blocks {
  public:
-  explicit Blocks(std::size_t number) : large_(number), small_(number) {
-    for (std::size_t i = 0; i < number; ++i) {
-      large_[i] = std::malloc(kMib);
-      std::memset(large_[i], 1, kMib);
-      small_[i] = std::malloc(4000);
-    }
+  explicit Blocks(std::uint64_t bytes) : blocks_(bytes / kMib) {
+    for (void*& block : blocks_) std::memset(block = std::malloc(kMib), 1, kMib);
   }
   Blocks(const Blocks&) = delete;
   Blocks& operator=(const Blocks&) = delete;
   ~Blocks() {
-    free_large();
-    for (void* const block : small_) std::free(block);
+    for (void* const block : blocks_) std::free(block);
   }
-  void free_large() {
-    for (void*& block : large_) std::free(std::exchange(block, nullptr));
+  /// Frees three of four, and not the last one, before which malloc gives nothing back by itself.
+  void free_most() {
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      if (i % 4 != 3) std::free(std::exchange(blocks_[i], nullptr));
+    }
   }
 
  private:
-  std::vector<void*> large_, small_;
+  std::vector<void*> blocks_;
 };
 
 /// Runs in a process of its own, since the allocator stays as it is told.
@@ -140,23 +139,23 @@ class Blocks {
 int fault_of_bound(std::uint64_t kept) {
   const auto bound = keep_freed_memory_of_questions(kept);
   const std::uint64_t before = resident_bytes(::getpid());
-  const auto is_within = [&](std::uint64_t bytes) {
-    return resident_bytes(::getpid()) < before + bytes + kMib;
-  };
-  Blocks few(kept / kMib / 2);
-  few.free_large();
+  const auto grown = [&] { return resident_bytes(::getpid()) - before; };
+  Blocks few(kept / 2);
+  few.free_most();
   bound();
-  if (is_within(kept / 4)) return 1;  // Given back without need.
-  Blocks many(3 * kept / kMib);
+  if (grown() < kept / 2 - kMib) return 1;  // Given back, though less than is kept.
+  Blocks many(4 * kept);
   bound();
-  if (is_within(2 * kept)) return 2;  // In use, as few's are again.
-  many.free_large();
-  if (is_within(2 * kept)) return 3;  // Nothing that bound() is to give back.
+  if (grown() < 4 * kept - kMib) return 2;  // All in use.
+  many.free_most();
+  if (grown() < 4 * kept - kMib) return 3;  // Else there is nothing to bound.
   bound();
-  if (!is_within(kept)) return 4;
-  const Blocks again(kept / kMib / 2);  // A bound that was met once is met by what is free again.
-  bound();
-  return is_within(kept / 4) ? 5 : 0;
+  if (grown() > kept + kept / 8 + kept + kMib) return 4;  // What is in use, and what is kept.
+  Blocks again(kept / 2);
+  again.free_most();
+  const std::uint64_t little = grown();
+  bound();  // malloc counts as free what it has given back.
+  return grown() < little ? 5 : 0;
 }
 
 TEST_F(KeptMemory, NoMoreStaysThanIsKept) {
