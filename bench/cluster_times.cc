@@ -25,7 +25,7 @@
 #include "engine/construct/tasks/task_messages.h"
 #include "engine/error.h"
 #include "engine/memory_units.h"
-#include "tools/freed_memory.h"
+#include "tools/kept_memory.h"
 
 namespace {
 

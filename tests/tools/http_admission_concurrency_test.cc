@@ -97,6 +97,27 @@ TEST_F(HttpAdmissionConcurrency, LetsQuestionsWaitForMemory) {
   expect_all_answered(sweeps);
 }
 
+TEST_F(HttpAdmissionConcurrency, LendsNothingOfWhatIsKept) {
+  service.sweep_bytes = 600;
+  limits.memory_bytes = 1000;
+  limits.kept_bytes = 400;
+  EXPECT_EQ(status_of("/nothing/sweep"), 200);
+  service.sweep_bytes = 601;
+  const HttpAnswer answer = connected()->get("/nothing/sweep");
+  EXPECT_EQ(answer.status, 503);
+  EXPECT_EQ(answer.json()["limit"], "memory_bytes");
+}
+
+TEST_F(HttpAdmissionConcurrency, BoundsWhatIsKeptWheneverQuestionsHadHalfOfIt) {
+  service.sweep_bytes = 100;
+  limits.memory_bytes = 2000;
+  limits.kept_bytes = 800;
+  for (int i = 1; i <= 9; ++i) {
+    EXPECT_EQ(status_of("/nothing/sweep"), 200);
+    EXPECT_TRUE(comes_true([&] { return service.bounded == i / 4; })) << i;
+  }
+}
+
 TEST_F(HttpAdmissionConcurrency, TellsWhoWaitedForATurnInVain) {
   service.sweep_bytes = 600;
   limits.memory_bytes = 2000;

@@ -74,6 +74,7 @@ class MadeService : public http::Service {
     }
   }
   void finish(const Request&, Response& response) override { response.add("X-Made", "yes"); }
+  void bound_freed_memory() noexcept override { ++bounded; }
   void note(const http::Served& served) noexcept override {
     {
       const std::lock_guard lock(mutex_);
@@ -86,7 +87,7 @@ class MadeService : public http::Service {
 
   std::uint64_t sweep_bytes = 0;
   std::atomic<bool> is_released{false};
-  std::atomic<int> waiting{0}, stopped{0}, noted{0}, hung_up{0}, cut{0};
+  std::atomic<int> waiting{0}, stopped{0}, noted{0}, hung_up{0}, cut{0}, bounded{0};
   std::atomic<GivenUp> last_given_up{GivenUp::kNot};
 
   [[nodiscard]] std::string last_remote() const {

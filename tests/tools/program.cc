@@ -142,6 +142,16 @@ void await_work(pid_t child, std::chrono::milliseconds time) {
   }
 }
 
+/// Waits until the output of a process holds a text, or it has ended.
+std::string await_output(pid_t child, const TestFolder& folder, const std::string& told) {
+  while (true) {
+    const bool is_over = has_ended(child);
+    std::string out = read_file(folder.file("out"));
+    if (is_over || out.find(told) != std::string::npos) return out;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 Outcome outcome_of(pid_t child, const TestFolder& folder) {
   rusage used{};
   int status = 0;
@@ -174,11 +184,21 @@ Outcome spawn_ptin_until(const std::string& told, int signal,
                          const std::vector<std::string>& arguments) {
   const TestFolder folder;
   const pid_t child = start_ptin(arguments, folder.file("out"), folder.file("err"));
-  while (!has_ended(child) && read_file(folder.file("out")).find(told) == std::string::npos) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  static_cast<void>(await_output(child, folder, told));
   kill(child, signal);
   return outcome_of(child, folder);
+}
+
+StartedPtin::StartedPtin(const std::vector<std::string>& arguments)
+    : process_(start_ptin(arguments, folder_.file("out"), folder_.file("err"))) {}
+
+StartedPtin::~StartedPtin() {
+  ::kill(process_, SIGTERM);
+  status_of(process_);
+}
+
+std::string StartedPtin::out_with(const std::string& text) const {
+  return await_output(process_, folder_, text);
 }
 
 Outcome spawn_ptin_into(const std::string& output, const std::vector<std::string>& arguments) {

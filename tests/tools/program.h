@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <sys/types.h>
 
 #include "tests/tools/small_terrains.h"
 
@@ -40,6 +41,23 @@ Outcome spawn_ptin(const std::vector<std::string>& arguments,
 /// Runs the program that was built, and sends it a signal once its standard output holds a text.
 Outcome spawn_ptin_until(const std::string& told, int signal,
                          const std::vector<std::string>& arguments);
+
+/// The program that was built, while it runs. SIGTERM ends it with the object.
+class StartedPtin {
+ public:
+  explicit StartedPtin(const std::vector<std::string>& arguments);
+  ~StartedPtin();
+  StartedPtin(const StartedPtin&) = delete;
+  StartedPtin& operator=(const StartedPtin&) = delete;
+
+  /// Waits until its standard output holds a text, or it has ended. @return The output.
+  [[nodiscard]] std::string out_with(const std::string& text) const;
+  [[nodiscard]] pid_t process() const noexcept { return process_; }
+
+ private:
+  TestFolder folder_;
+  pid_t process_;
+};
 
 /// Runs the program that was built with its output going to a file that is there. Only status and
 /// err are set.

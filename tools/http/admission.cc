@@ -151,13 +151,20 @@ struct Admission::Shared {
         is_thread_free && first && !memory->has(first->memory, first->client, use_of(ticket.lane));
     return lacks_memory ? WaitsFor::kMemory : WaitsFor::kTurn;
   }
+  /// Notes the end of a task. Whether it is time to look at what is kept of freed memory.
+  [[nodiscard]] bool is_to_bound(std::uint64_t given_back) {
+    ended += given_back;
+    if (!bounds || sizes.memory.kept == 0 || ended < sizes.memory.kept / 2) return false;
+    ended = 0;
+    return true;
+  }
   [[nodiscard]] bool is_at_rest() const {
     return running == std::array<std::size_t, kLanes>{} &&
            std::all_of(lines.begin(), lines.end(), [](const Line& l) { return l.size() == 0; });
   }
 
   Sizes sizes;
-  std::function<void()> rests;
+  std::function<void()> rests, bounds;
   std::shared_ptr<MemoryBudget> memory;
   mutable std::mutex mutex;
   std::array<std::condition_variable, kLanes> changed;  ///< Those of a tile and a sweep are one.
@@ -165,6 +172,7 @@ struct Admission::Shared {
   std::array<std::size_t, kLanes> running{};
   bool wants_memory = false;  ///< A ticket waits for memory that was not there.
   bool has_worked = false;    ///< Much memory came back since the last rest, or will.
+  std::uint64_t ended = 0;    ///< Memory of tasks that ended since the bounds were looked at.
   bool ends = false;
 };
 
@@ -172,10 +180,11 @@ std::size_t Admission::width(Lane lane, const Sizes& sizes) noexcept {
   return lane == Lane::kRead ? kReaders : sizes.threads;
 }
 
-Admission::Admission(const Sizes& sizes, std::function<void()> rests)
+Admission::Admission(const Sizes& sizes, std::function<void()> rests, std::function<void()> bounds)
     : shared_(std::make_shared<Shared>()) {
   shared_->sizes = sizes;
   shared_->rests = std::move(rests);
+  shared_->bounds = std::move(bounds);
   const std::weak_ptr<Shared> weak = shared_;
   shared_->memory = std::make_shared<MemoryBudget>(sizes.memory, [weak](MemoryUse use) {
     const auto shared = weak.lock();
@@ -286,10 +295,15 @@ void Admission::work(const std::vector<Lane>& lanes) {
     lock.unlock();
     ticket->run(std::move(lease));
     const Lane lane = ticket->lane;
+    const std::uint64_t memory = ticket->memory;
     ticket.reset();
     lease.reset();
     lock.lock();
     --shared->running[index_of(lane)];
+    if (!shared->is_to_bound(memory)) continue;
+    lock.unlock();
+    shared->bounds();
+    lock.lock();
   }
 }
 

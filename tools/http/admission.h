@@ -69,9 +69,11 @@ class Admission {
     MemoryParts memory;
   };
 
-  /// @param rests  Called on a thread for computing when there were long questions, or memory of
-  ///               bodies or answers came back, and nothing is left to do.
-  explicit Admission(const Sizes& sizes, std::function<void()> rests = {});
+  /// @param rests   Called on a thread for computing when there were long questions, or memory of
+  ///                bodies or answers came back, and nothing is left to do.
+  /// @param bounds  Called there whenever tasks had half of MemoryParts::kept and have ended.
+  explicit Admission(const Sizes& sizes, std::function<void()> rests = {},
+                     std::function<void()> bounds = {});
   /// Finishes what runs; what waits is let go.
   ~Admission();
   Admission(const Admission&) = delete;

@@ -24,6 +24,8 @@ struct Limits {
   std::size_t threads = 1;   ///< Questions of each lane that are computed at once.
   /// Memory of bodies, questions and answers, which wait where there is none at the moment.
   std::uint64_t memory_bytes = std::uint64_t{192} << 20;
+  /// Of the memory, what is lent to nobody, since the allocator keeps as much of what was freed.
+  std::uint64_t kept_bytes = 0;
   /// Bytes that one question of the lane of points takes at most, and one of any lane: for so much of the
   /// memory there is always room beside answers that clients take slowly.
   std::uint64_t point_bytes = 0, question_bytes = 0;

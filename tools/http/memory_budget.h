@@ -27,10 +27,11 @@ inline constexpr std::size_t kMemoryUses = 4;
 /// How the budget is divided. What clients can hold for long has a bounded part, so that what is
 /// computed finds the rest.
 struct MemoryParts {
-  std::uint64_t all = 0;
+  std::uint64_t all = 0;           ///< Lent at most.
   std::uint64_t points = 0;        ///< Nothing but points may take these.
   std::uint64_t most_answers = 0;  ///< At most for all answers that are written.
   std::uint64_t most_bodies = 0;   ///< At most for all bodies.
+  std::uint64_t kept = 0;          ///< Beside them all, lent to nobody: what was freed and is kept.
 };
 
 /// Bytes that are lent out, fairly among the clients that borrow them. Threads: any.
@@ -80,7 +81,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   explicit MemoryBudget(const MemoryParts& parts, std::function<void(MemoryUse)> returned = {})
       : parts_(parts), returned_(std::move(returned)) {}
   /// All of it for any use.
-  explicit MemoryBudget(std::uint64_t bytes) : MemoryBudget(MemoryParts{bytes, 0, bytes, bytes}) {}
+  explicit MemoryBudget(std::uint64_t bytes)
+      : MemoryBudget(MemoryParts{bytes, 0, bytes, bytes, 0}) {}
 
   /// Null where fewer than `bytes` are left for the use, or where the client has more than is left
   /// for all others. Points have no shares: they take what is kept for them. An empty name is no client.

@@ -41,7 +41,8 @@ MemoryParts parts_of(const Limits& limits) {
     return all - std::min(all, part);
   };
   MemoryParts parts;
-  parts.all = limits.memory_bytes;
+  parts.kept = limits.kept_bytes;
+  parts.all = without(limits.memory_bytes, parts.kept);
   parts.points =
       std::min(limits.threads * limits.point_bytes, without(parts.all, limits.question_bytes));
   parts.most_bodies = std::max<std::uint64_t>(parts.all / 6, std::uint64_t{4} * limits.body_bytes);
@@ -83,7 +84,9 @@ struct Server::Inside {
         turns(io.get_executor()),
         acceptor(io),
         pause(io),
-        admission(sizes_of(limits), [&service] { service.rest(); }) {
+        admission(
+            sizes_of(limits), [&service] { service.rest(); },
+            [&service] { service.bound_freed_memory(); }) {
     const tcp::endpoint endpoint = endpoint_of(address);
     Status status;
     acceptor.open(endpoint.protocol(), status);

@@ -30,8 +30,8 @@ struct Served {
   bool is_whole = false;            ///< All of the answer was taken by the system.
 };
 
-/// Answers requests. Threads: answer() and rest() may be called on several at once; the server calls all other
-/// functions on the thread of its connections, which they must not block.
+/// Answers requests. Threads: answer(), rest() and bound_freed_memory() may be called on several at once; the server
+/// calls all other functions on the thread of its connections, which they must not block.
 class Service {
  public:
   virtual ~Service() = default;
@@ -57,6 +57,9 @@ class Service {
   /// Called on one of the threads for computing, some time after the last long question: the time to
   /// give memory back.
   virtual void rest() noexcept {}
+  /// Called on one of the threads for computing, whenever questions have given back half as much memory as is
+  /// kept (Limits::kept_bytes): the time to see that no more is.
+  virtual void bound_freed_memory() noexcept {}
   /// Called once for every request.
   virtual void note(const Served& served) noexcept = 0;
 };

@@ -9,7 +9,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
-#include "tools/freed_memory.h"
+#include "tools/kept_memory.h"
 #include "tools/output/output_file.h"
 #include "tools/ptin/build_show.h"
 #include "tools/ptin/build_warnings.h"

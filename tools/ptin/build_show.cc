@@ -7,7 +7,7 @@
 
 #include "engine/construct/memory_plan.h"
 #include "tools/facts/human.h"
-#include "tools/freed_memory.h"
+#include "tools/kept_memory.h"
 #include "tools/ptin/query_options.h"
 
 namespace ptin::tools {

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include <malloc.h>
 #include <unistd.h>
 
 #include "engine/error.h"
@@ -22,6 +21,7 @@
 #include "tools/facts/human.h"
 #include "tools/http/descriptors.h"
 #include "tools/http/server.h"
+#include "tools/kept_memory.h"
 #include "tools/ptin/query_options.h"
 #include "tools/serve/config_file.h"
 #include "tools/serve/limit_table.h"
@@ -108,19 +108,16 @@ std::string sizes_text(const serve::ServeOptions& options) {
   return counted(limits.threads, "thread") + " for points, and " +
          counted(limits.threads + 1, "thread") +
          " for tiles and sweeps, of which neither has more than " + std::to_string(limits.threads) +
-         "; " + human_bytes(limits.memory_bytes) + " of memory, " +
-         human_bytes(options.question.question_memory) + " a question; " +
-         counted(limits.connections, "connection");
+         "; " + human_bytes(limits.memory_bytes) + " of memory, of which freed memory has " +
+         human_bytes(limits.kept_bytes) + ", " + human_bytes(options.question.question_memory) +
+         " a question; " + counted(limits.connections, "connection");
 }
 
 int run_serve(const ServeCommand& command, const Context& context) {
-  // Each thread would else keep memory of its own that no other one gets.
-  ::mallopt(M_ARENA_MAX, 2);
-  // Large blocks go back to the system as soon as they are freed.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  ::mallopt(M_TRIM_THRESHOLD, 4 << 20);
   install_sigbus_guard();  // A file that is cut short fails questions, not the service.
   serve::ServeOptions options = options_of(command);
+  options.bound_freed_memory = keep_freed_memory_of_questions(options.http.kept_bytes);
+  options.give_back_freed_memory = give_back_freed_memory;
   std::signal(SIGPIPE, SIG_IGN);  // Of whoever read the log and left.
   serve::LogWriter log(STDERR_FILENO);
   serve::TerrainService service(options, [&log](const std::string& line) { log.add(line); });

@@ -3,8 +3,10 @@
 // What a service of terrains is started with.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,18 +52,28 @@ struct ServeOptions {
   bool offers_files = false;
   MetricsFor metrics = MetricsFor::kDefault;
   std::string version;  ///< Version of the program; part of every ETag.
+  /// What is done about freed memory beyond http.kept_bytes, and at rest: the program's to say, since its
+  /// allocator is. Empty: nothing.
+  std::function<void()> bound_freed_memory, give_back_freed_memory;
 };
 
 /// Divides the memory among the lanes: sweeps and tiles take all of a question's, points a quarter.
-/// Where none is given it is so much that every lane can be full, and a sixth more for bodies and for
-/// answers that are written.
+/// Of what is freed as much as one question takes is kept, or a quarter of what is given beyond that.
+/// Where no memory is given it is so much that every lane can be full, a sixth more for bodies and for
+/// answers that are written, and what is kept.
 inline void divide_memory(ServeOptions& options) noexcept {
-  const std::uint64_t threads = options.http.threads, one = options.question.question_memory;
-  options.http.question_bytes = one;
-  options.http.point_bytes = one / 4;
-  if (options.http.memory_bytes != 0) return;
+  http::Limits& limits = options.http;
+  const std::uint64_t threads = limits.threads, one = options.question.question_memory;
+  limits.question_bytes = one;
+  limits.point_bytes = one / 4;
+  limits.kept_bytes = one;
+  if (limits.memory_bytes != 0) {
+    const std::uint64_t beyond = limits.memory_bytes - std::min(limits.memory_bytes, one);
+    limits.kept_bytes = std::min(one, beyond / 4);
+    return;
+  }
   const std::uint64_t lanes = (threads + 1) * one + threads * (one / 4);
-  options.http.memory_bytes = lanes + lanes / 5 + (std::uint64_t{16} << 20);
+  limits.memory_bytes = lanes + lanes / 5 + (std::uint64_t{16} << 20) + limits.kept_bytes;
 }
 
 }  // namespace ptin::serve

@@ -7,8 +7,6 @@
 #include <ctime>
 #include <utility>
 
-#include <malloc.h>
-
 #include "engine/error.h"
 #include "tools/error_status.h"
 #include "tools/facts/human.h"
@@ -225,7 +223,13 @@ http::Needs TerrainService::needs(const Request& request) const {
   return needs;
 }
 
-void TerrainService::rest() noexcept { ::malloc_trim(0); }
+void TerrainService::rest() noexcept {
+  if (options_.give_back_freed_memory) options_.give_back_freed_memory();
+}
+
+void TerrainService::bound_freed_memory() noexcept {
+  if (options_.bound_freed_memory) options_.bound_freed_memory();
+}
 
 Response TerrainService::answer(const Request& request) {
   return answer_endpoint(request, match(request));

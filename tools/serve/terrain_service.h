@@ -37,8 +37,8 @@ class TerrainService : public http::Service {
                                        http::GivenUp why) noexcept override;
   void finish(const http::Request& request, http::Response& response) override;
   void note(const http::Served& served) noexcept override;
-  /// Gives the memory that was freed back to the system.
   void rest() noexcept override;
+  void bound_freed_memory() noexcept override;
 
   /// What load() is asked of; null while there is none.
   void watch(const http::Server* server) noexcept { server_ = server; }
