@@ -56,7 +56,8 @@ void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& c
 }
 
 /// Fetches into the caches, ahead of the splits, what they will touch: the record, its slots in the
-/// table of vertices, w, the triangle known of w, and what lies around that.
+/// table of vertices, w, whose key the table looks at, the triangle known of w, and what lies around
+/// that.
 /// Looks at the mesh as it is now: where the mesh changes before the split comes, the split misses
 /// the cache, and nothing else happens.
 class StarFetcher {
@@ -65,8 +66,7 @@ class StarFetcher {
 
   /// Steps of the pipeline: how many splits after the fetch of its record a split reaches each of
   /// them. The last one applies the split.
-  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 32,
-                               kApply = 40;
+  static constexpr std::size_t kSlots = 8, kVertex = 16, kEnter = 24, kNeighbours = 32, kApply = 40;
 
   static void fetch_record(const PendingSplit& s) noexcept {
     const auto* const bytes = reinterpret_cast<const char*>(&s);  // may lie across two lines
@@ -77,7 +77,10 @@ class StarFetcher {
     ids.prefetch(s.u);
     ids.prefetch(s.w);
   }
-  void fetch_vertex(VertexId w) const noexcept { prefetch(&tin_.vertices[w]); }
+  void fetch_vertex(const PendingSplit& s, const VertexTable& ids) const noexcept {
+    const VertexId w = ids.guess(s.w);
+    prefetch(&tin_.vertices[w == kNone ? 0 : w]);
+  }
   void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
   // Fetches the neighbour and the corner that are not around w too: finding out which they are would
   // cost more.
@@ -144,8 +147,8 @@ void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Ba
   std::uint32_t triangles = 0;
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const PendingSplit& s = splits[order_[i]];
-    Resolved r = enter(s, vertex_place(batch, i), context);
-    r.triangle = triangles;
+    const VertexId u = vertex_place(batch, i);
+    const Resolved r{u, enter(s, u, context), triangles};
     triangles += triangles_of(s.flags);
     apply_one(s, r, batch, context);
   }
@@ -175,16 +178,17 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
     if (const std::size_t i = at(F::kSlots); i < count) {
       F::fetch_slots(splits[order_[i]], ids_);
     }
+    if (const std::size_t i = at(F::kVertex); i < count) {
+      fetcher.fetch_vertex(splits[order_[i]], ids_);
+    }
     if (const std::size_t i = at(F::kEnter); i < count) {
       Resolved& r = ring[i % kRing];
       const PendingSplit& s = splits[order_[i]];
-      r = enter(s, vertex_place(batch, i), context);
+      r.u = vertex_place(batch, i);
+      r.w = enter(s, r.u, context);
       r.triangle = triangles;
       triangles += triangles_of(s.flags);
-      fetcher.fetch_vertex(r.w);
-    }
-    if (const std::size_t i = at(F::kTriangle); i < count) {
-      fetcher.fetch_triangle(ring[i % kRing].w);
+      fetcher.fetch_triangle(r.w);
     }
     if (const std::size_t i = at(F::kNeighbours); i < count) {
       fetcher.fetch_neighbours(ring[i % kRing].w);
@@ -239,9 +243,9 @@ void Refinement::forget_places(const Batch& batch) {
   drop(free_triangles_, batch.triangles);
 }
 
-/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split.
-Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
-                                       const QueryContext& context) {
+/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split. One
+/// word is returned: a pair would be stored in parts, and loaded whole as soon as that is done.
+VertexId Refinement::enter(const PendingSplit& s, VertexId u, const QueryContext& context) {
   tin_.vertices[u] = {point_of(s.u), s.height, kNone};
   const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
   tin_.has_height[u] = is_void ? 0 : 1;
@@ -256,7 +260,7 @@ Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
   if (w == kNone) [[unlikely]] {
     throw_not_made(s, context);
   }
-  return {u, w, 0};
+  return w;
 }
 
 void Refinement::apply_one(const PendingSplit& s, const Resolved& r, const Batch& batch,
