@@ -25,6 +25,11 @@ template <class Lanes>
   return v;
 }
 
+template <class Lanes>
+inline void store(void* to, const Lanes& v) noexcept {
+  std::memcpy(to, &v, sizeof v);
+}
+
 /// Lanes 0 1 and 2 3, given by 64 bits each.
 [[nodiscard]] inline Int4 pair(std::uint64_t lower, std::uint64_t upper) noexcept {
   return std::bit_cast<Int4>(Unsigned2{lower, upper});

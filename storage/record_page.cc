@@ -2,8 +2,8 @@
 #include "storage/record_page.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cstddef>
 #include <cstring>
 #include <type_traits>
 
@@ -20,6 +20,10 @@ using lanes::Int4;
 
 /// The lanes of a box that hold its minima.
 constexpr Int4 kMinima{-1, -1, 0, 0};
+
+/// A vertex as a record has it.
+void put(VertexKey& to, VertexKey key) noexcept { to = key; }
+void put(GridPoint& to, VertexKey key) noexcept { to = point_of(key); }
 
 [[noreturn]] void throw_corrupt(const std::string& what, const std::string& path, PageId id) {
   throw Error(ErrorCode::corruption, what, path + ", page " + std::to_string(index_of(id)));
@@ -137,7 +141,7 @@ template <class Record>
   r.error = short_value(static_cast<ShortBits>(error));
   r.rank = static_cast<std::uint16_t>(rank);
   r.flags = 0;
-  std::memcpy(&r.roi, &place.roi, sizeof r.roi);
+  lanes::store(&r.roi, place.roi);
   if constexpr (std::is_same_v<Record, VertexSplit>) {
     r.deviation = short_value(static_cast<ShortBits>(deviation));
     r.height_lo = has_heights ? bits(low) : no_heights(heights_.type).lo;
@@ -176,12 +180,14 @@ RingShape RecordPage::shape_of(const PageRun& run, std::uint32_t k) const noexce
           2 * offset_bits + height_bits + death_bits + columns_.common_bits()};
 }
 
-void RecordPage::find_rings(const PageRun& run, RunRings& out) const noexcept {
+// What is written does not overlap what is read (`__restrict`): records are looked at side by side.
+void RecordPage::find_rings(const PageRun& run, RunRings& __restrict out) const noexcept {
   const auto at = [&](PageColumn c, std::uint32_t k) {
     return static_cast<std::int64_t>(run.at(c, k));
   };
   const std::int64_t common = columns_.common_bits();
-  for (std::uint32_t k = 0; k < run.count(); ++k) {
+  const std::uint32_t count = run.count();
+  for (std::uint32_t k = 0; k < count; ++k) {
     const std::int64_t degree = at(PageColumn::kDegree, k);
     const std::int64_t offset = at(PageColumn::kOffsetBits, k);
     const std::int64_t height = at(PageColumn::kHeightBits, k);
@@ -194,7 +200,7 @@ void RecordPage::find_rings(const PageRun& run, RunRings& out) const noexcept {
   }
   const auto rings_end = static_cast<std::int64_t>(columns_.rings_end());
   std::int64_t bit = 0;
-  for (std::uint32_t k = 0; k < run.count(); ++k) {
+  for (std::uint32_t k = 0; k < count; ++k) {
     if (k % layout::kRingRun == 0) {
       const std::size_t rings = (run.first() + k) / layout::kRingRun;
       bit = static_cast<std::int64_t>(columns_.run_begin(bytes_.data(), rings));
@@ -286,10 +292,11 @@ template <class Record>
   const Int4 low = lanes::lower_twice(own.roi), high = lanes::upper_twice(own.roi);
   const Int4 outside = (w_vl < low) | (w_vl > high) | (vr < low) | (vr > high) | own.outside |
                        lanes::both(w_vl == own.u_twice) | lanes::both(vr == own.u_twice);
-  static_assert(offsetof(Record, vl) == offsetof(Record, w) + sizeof r.w);
-  std::memcpy(&r.u, &own.key, sizeof r.u);
-  std::memcpy(&r.w, &w_vl, sizeof r.w + sizeof r.vl);
-  std::memcpy(&r.vr, &vr, sizeof r.vr);
+  const auto [w_key, vl_key] = std::bit_cast<std::array<VertexKey, 2>>(w_vl);
+  put(r.u, own.key);
+  put(r.w, w_key);
+  put(r.vl, vl_key);
+  put(r.vr, std::bit_cast<std::array<VertexKey, 2>>(vr)[0]);
   if (columns_.header().void_bits != 0) [[unlikely]] {
     const bool left_void = (r.flags & VertexSplit::kNoLeft) == 0 && is_void(corner_bits, first);
     const bool right_void = (r.flags & VertexSplit::kNoRight) == 0 && is_void(corner_bits, vr_bit);

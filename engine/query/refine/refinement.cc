@@ -127,6 +127,55 @@ Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_
   }
 }
 
+/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split. One
+/// word is returned: a pair would be stored in parts, and loaded whole as soon as that is done.
+[[gnu::always_inline]] inline VertexId Refinement::enter(const PendingSplit& s, VertexId u,
+                                                         const QueryContext& context) {
+  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+  const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
+  tin_.has_height[u] = is_void ? 0 : 1;
+  has_void_vertex_ |= is_void;
+  if (!ids_.insert(tin_, u)) [[unlikely]] {
+    throw_refused(s, "its vertex is in the mesh already", context);
+  }
+  if (track_pages_) {
+    vertex_pages_[u] = s.page;
+  }
+  const VertexId w = ids_.find(tin_, s.w);
+  if (w == kNone) [[unlikely]] {
+    throw_not_made(s, context);
+  }
+  return w;
+}
+
+// Inlined, as enter(): to save and restore the registers takes forty instructions a split.
+[[gnu::always_inline]] inline void Refinement::apply_one(const PendingSplit& s, const Resolved& r,
+                                                         const Batch& batch,
+                                                         const QueryContext& context) {
+  SplitSite site = site_of(r.u, r.w, kNone, kNone, s.flags);
+  const bool w_is_there = tin_.vertices[r.w].triangle != kNone;
+  // A record with one side (or, damaged, with none) does not use the other place, which may not
+  // exist.
+  const TriangleId left = triangle_place(batch, r.triangle);
+  const TriangleId right = triangle_place(batch, r.triangle + (site.has_left ? 1 : 0));
+  if (!w_is_there || !split_into(tin_, site, {s.vl, s.vr}, left, right)) [[unlikely]] {
+    if (ids_.find(tin_, s.vl) == kNone || ids_.find(tin_, s.vr) == kNone) {
+      throw_not_made(s, context);
+    }
+    throw_refused(s, "it does not fit the mesh", context);
+  }
+  if (has_void_vertex_ && !classes_fit(tin_, site)) [[unlikely]] {
+    throw_refused(s, "its classes do not fit its heights", context);
+  }
+  if (track_pages_) {
+    Star star;
+    walk_star(tin_, r.u, star);
+    for (const TriangleId t : star.triangles) {
+      triangle_pages_[t] = vertex_pages_[r.u];
+    }
+  }
+}
+
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
   static constexpr std::size_t kFew = 4096;  // splits of a mesh that stays in the caches anyway
   refuse_too_many(splits, context);
@@ -241,52 +290,6 @@ void Refinement::forget_places(const Batch& batch) {
   };
   drop(free_vertices_, batch.vertices);
   drop(free_triangles_, batch.triangles);
-}
-
-/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split. One
-/// word is returned: a pair would be stored in parts, and loaded whole as soon as that is done.
-VertexId Refinement::enter(const PendingSplit& s, VertexId u, const QueryContext& context) {
-  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
-  const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
-  tin_.has_height[u] = is_void ? 0 : 1;
-  has_void_vertex_ |= is_void;
-  if (!ids_.insert(tin_, u)) [[unlikely]] {
-    throw_refused(s, "its vertex is in the mesh already", context);
-  }
-  if (track_pages_) {
-    vertex_pages_[u] = s.page;
-  }
-  const VertexId w = ids_.find(tin_, s.w);
-  if (w == kNone) [[unlikely]] {
-    throw_not_made(s, context);
-  }
-  return w;
-}
-
-void Refinement::apply_one(const PendingSplit& s, const Resolved& r, const Batch& batch,
-                           const QueryContext& context) {
-  SplitSite site = site_of(r.u, r.w, kNone, kNone, s.flags);
-  const bool w_is_there = tin_.vertices[r.w].triangle != kNone;
-  // A record with one side (or, damaged, with none) does not use the other place, which may not
-  // exist.
-  const TriangleId left = triangle_place(batch, r.triangle);
-  const TriangleId right = triangle_place(batch, r.triangle + (site.has_left ? 1 : 0));
-  if (!w_is_there || !split_into(tin_, site, {s.vl, s.vr}, left, right)) [[unlikely]] {
-    if (ids_.find(tin_, s.vl) == kNone || ids_.find(tin_, s.vr) == kNone) {
-      throw_not_made(s, context);
-    }
-    throw_refused(s, "it does not fit the mesh", context);
-  }
-  if (has_void_vertex_ && !classes_fit(tin_, site)) [[unlikely]] {
-    throw_refused(s, "its classes do not fit its heights", context);
-  }
-  if (track_pages_) {
-    Star star;
-    walk_star(tin_, r.u, star);
-    for (const TriangleId t : star.triangles) {
-      triangle_pages_[t] = vertex_pages_[r.u];
-    }
-  }
 }
 
 }  // namespace ptin
