@@ -97,17 +97,13 @@ void PageRun::read(PageColumn column, std::uint64_t records) noexcept {
   }
 }
 
-/// Everything of a record but what follows from its ring, and whether the descriptor admits it. A
-/// roi is made and held against the others as one vector: stored side by side and loaded as a vector,
-/// it would wait for the stores.
-/// @param place  Becomes where the record lies.
-template <class Record>
-[[gnu::always_inline]] inline bool RecordPage::head_of(const PageRun& run, std::uint32_t k,
-                                                       Record& r, OwnPlace& place) const noexcept {
-  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
+/// Where a record lies. The roi is made and held against the descriptor as one vector: stored side by
+/// side and loaded as a vector, it would wait for the stores.
+[[gnu::always_inline]] inline RecordPage::OwnPlace RecordPage::own_place(
+    const PageRun& run, std::uint32_t k) const noexcept {
   const auto whole = [&](PageColumn c) { return static_cast<std::int32_t>(run.at(c, k)); };
-  const std::int64_t x = at(PageColumn::kX), y = at(PageColumn::kY);
-  place.key = run.at(PageColumn::kY, k) << 32 | static_cast<std::uint32_t>(x);
+  OwnPlace place;
+  place.key = run.at(PageColumn::kY, k) << 32 | static_cast<std::uint32_t>(whole(PageColumn::kX));
   place.u_twice = lanes::pair(place.key, place.key);
   place.roi = lanes::moved(place.u_twice,
                            Int4{whole(PageColumn::kWest), whole(PageColumn::kSouth),
@@ -117,7 +113,16 @@ template <class Record>
   // that wraps around ends up on the other side of u.
   const Int4 sides = place.roi ^ ~kMinima;
   place.outside = (bounds_.sides > sides) | (sides > (place.u_twice ^ ~kMinima));
+  return place;
+}
 
+/// Everything of a record but what follows from its place and its ring. False where it, or u, is
+/// none, or the descriptor does not admit it.
+template <class Record>
+[[gnu::always_inline]] inline bool RecordPage::head_of(const PageRun& run, std::uint32_t k,
+                                                       Record& r) const noexcept {
+  const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
+  const std::int64_t x = at(PageColumn::kX), y = at(PageColumn::kY);
   const std::int64_t height = at(PageColumn::kHeight);
   const std::int64_t low = height - at(PageColumn::kBelow), high = height + at(PageColumn::kAbove);
   const std::int64_t rank = at(PageColumn::kRank);
@@ -141,7 +146,6 @@ template <class Record>
   r.error = short_value(static_cast<ShortBits>(error));
   r.rank = static_cast<std::uint16_t>(rank);
   r.flags = 0;
-  lanes::store(&r.roi, place.roi);
   if constexpr (std::is_same_v<Record, VertexSplit>) {
     r.deviation = short_value(static_cast<ShortBits>(deviation));
     r.height_lo = has_heights ? bits(low) : no_heights(heights_.type).lo;
@@ -165,9 +169,10 @@ bool RecordPage::take_flags(std::uint64_t flags, Record& r) noexcept {
 }
 
 bool RecordPage::head(const PageRun& run, std::uint32_t k, VertexSplit& r) const noexcept {
-  OwnPlace place;
-  const bool is_sound = head_of(run, k, r, place);
-  r.u = point_of(place.key);
+  const OwnPlace place = own_place(run, k);
+  const bool is_sound = head_of(run, k, r);
+  put(r.u, place.key);
+  lanes::store(&r.roi, place.roi);
   return is_sound & !lanes::any(place.outside);
 }
 
@@ -312,8 +317,9 @@ template <class Record>
 [[gnu::always_inline]] inline bool RecordPage::split_of(const PageRun& run, std::uint32_t k,
                                                         const RunRings& rings,
                                                         Record& r) const noexcept {
-  OwnPlace own;
-  return head_of(run, k, r, own) && rings.is_sound(k) && ends_of(run, k, rings, own, r);
+  const OwnPlace own = own_place(run, k);
+  lanes::store(&r.roi, own.roi);
+  return head_of(run, k, r) && rings.is_sound(k) && ends_of(run, k, rings, own, r);
 }
 
 bool RecordPage::split(const PageRun& run, std::uint32_t k, const RunRings& rings,
@@ -398,6 +404,17 @@ bool RecordPage::admits(const VertexSplit& r, const RingSpan& span) const noexce
          d.death_min <= span.least_death;
 }
 
+/// Room for `count` more records. Each is written in its place, since to append it would copy it.
+template <class Record>
+Record* grow(std::vector<Record>& out, std::size_t count) {
+  const std::size_t before = out.size();
+  if (out.capacity() < before + count) {
+    out.reserve(std::max(before + count, 2 * before));
+  }
+  out.resize(before + count);
+  return out.data() + before;
+}
+
 /// @param predicate  Null: all records are wanted. Those of a page of which all are, are not asked
 ///                   for their attributes one by one.
 template <class Record>
@@ -408,11 +425,7 @@ void RecordPage::decode_wanted(const AttributePredicate* predicate,
                                                        short_value(descriptor_.error_min));
   const GridBox reach = wants_all ? GridBox{} : predicate->reach();
   const std::size_t before = out.size();
-  if (out.capacity() < before + records()) {
-    out.reserve(std::max(before + records(), 2 * before));
-  }
-  out.resize(before + records());  // each is written in its place: to append it would copy it
-  Record* next = out.data() + before;
+  Record* next = grow(out, records());
   RunRings rings;
   for (PageRun run(*this); run.next();) {
     run.take_all();

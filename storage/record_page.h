@@ -122,9 +122,9 @@ class RecordPage {
   };
   template <class Record>
   void decode_wanted(const AttributePredicate* predicate, std::vector<Record>& out) const;
+  [[nodiscard]] OwnPlace own_place(const PageRun& run, std::uint32_t k) const noexcept;
   template <class Record>
-  [[nodiscard]] bool head_of(const PageRun& run, std::uint32_t k, Record& r,
-                             OwnPlace& place) const noexcept;
+  [[nodiscard]] bool head_of(const PageRun& run, std::uint32_t k, Record& r) const noexcept;
   template <class Record>
   [[nodiscard]] static bool take_flags(std::uint64_t flags, Record& r) noexcept;
   template <class Record>
