@@ -61,7 +61,7 @@ inline constexpr std::uint8_t kLeastDegree = 3;
 [[nodiscard]] constexpr bool is_ring_shape(std::uint64_t degree, std::uint64_t offset_bits,
                                            std::uint64_t height_bits,
                                            std::uint64_t death_bits) noexcept {
-  return degree >= kLeastDegree && degree <= layout::kMostDegree && offset_bits >= 1 &&
+  return degree >= kLeastDegree && degree <= layout::kMostDegree &&
          offset_bits <= kMostOffsetWidth && height_bits <= kMostHeightWidth &&
          death_bits <= kMostShortWidth;
 }

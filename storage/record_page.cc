@@ -198,7 +198,8 @@ void RecordPage::find_rings(const PageRun& run, RunRings& __restrict out) const 
     const std::int64_t height = at(PageColumn::kHeightBits, k);
     const std::int64_t death = at(PageColumn::kDeathBits, k);
     out.corner_bits[k] = 2 * offset + height + death + common;
-    // As is_ring_shape(): the sign of one of these is that of a number beyond its range.
+    // As is_ring_shape(): the sign of one of these is that of a number beyond its range. Where an
+    // offset has no bits, all corners are u.
     out.beyond[k] = (degree - kLeastDegree) | (layout::kMostDegree - degree) | (offset - 1) |
                     (kMostOffsetWidth - offset) | (kMostHeightWidth - height) |
                     (kMostShortWidth - death);
