@@ -112,6 +112,7 @@ set(public_headers
     storage/index.h
     storage/layout.h
     storage/page_store.h
+    storage/pending_split.h
     storage/record.h
     storage/star.h
     storage/store_facts.h

@@ -2,7 +2,9 @@
 #include "storage/page_columns.h"
 
 #include <algorithm>
+#include <cstring>
 
+#include "storage/box_lanes.h"
 #include "storage/short_float.h"
 
 namespace ptin {
@@ -11,20 +13,34 @@ namespace {
 
 constexpr std::size_t bytes_of_bits(std::size_t bits) { return (bits + 7) / 8; }
 
-/// Takes numbers of a width apart, `kTogether` of them out of one load.
+/// Takes numbers of a width apart, `kTogether` of them out of one load, and two by one operation.
 template <unsigned kTogether>
 void take_apart(const std::byte* page, std::size_t bit, unsigned width, std::uint64_t base,
                 std::span<std::uint64_t> out) noexcept {
+  using lanes::Unsigned2;
+  static_assert(kTogether % 2 == 0);
   const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
+  const Unsigned2 bases{base, base}, masks{mask, mask};
   std::size_t i = 0;
   for (; i + kTogether <= out.size(); i += kTogether, bit += std::size_t{kTogether} * width) {
-    std::uint64_t word = read_bits(page, bit, kTogether * width);
-    for (unsigned k = 0; k < kTogether; ++k, word >>= width) {
-      out[i + k] = base + (word & mask);
+    const std::uint64_t word = read_bits(page, bit, kMostFieldBits);
+    Unsigned2 pair{word, word >> width};
+    for (unsigned k = 0; k < kTogether; k += 2, pair >>= 2 * width) {
+      const Unsigned2 numbers = bases + (pair & masks);
+      std::memcpy(&out[i + k], &numbers, sizeof numbers);
     }
   }
   for (; i < out.size(); ++i, bit += width) {
     out[i] = base + read_bits(page, bit, width);
+  }
+}
+
+/// Takes numbers of a width apart one by one.
+void take_singly(const std::byte* page, std::size_t bit, unsigned width, std::uint64_t base,
+                 std::span<std::uint64_t> out) noexcept {
+  for (std::uint64_t& number : out) {
+    number = base + read_bits(page, bit, width);
+    bit += width;
   }
 }
 
@@ -44,7 +60,7 @@ void PageColumns::read_run(const std::byte* page, PageColumn column, std::size_t
   } else if (width * 2 <= kMostFieldBits) {
     take_apart<2>(page, bit, width, base_[c], out);
   } else {
-    take_apart<1>(page, bit, width, base_[c], out);
+    take_singly(page, bit, width, base_[c], out);
   }
 }
 

@@ -55,12 +55,15 @@ inline constexpr std::uint8_t kMostOffsetWidth = 32;
 /// The most bits of a corner's height: the difference of two ordered heights, with its sign.
 inline constexpr std::uint8_t kMostHeightWidth = 33;
 
+inline constexpr std::uint8_t kLeastDegree = 3;
+
 /// Whether a ring of so many corners, with fields of these widths, can be what was written.
 [[nodiscard]] constexpr bool is_ring_shape(std::uint64_t degree, std::uint64_t offset_bits,
                                            std::uint64_t height_bits,
                                            std::uint64_t death_bits) noexcept {
-  return degree >= 3 && degree <= layout::kMostDegree && offset_bits <= kMostOffsetWidth &&
-         height_bits <= kMostHeightWidth && death_bits <= kMostShortWidth;
+  return degree >= kLeastDegree && degree <= layout::kMostDegree &&
+         offset_bits <= kMostOffsetWidth && height_bits <= kMostHeightWidth &&
+         death_bits <= kMostShortWidth;
 }
 
 /// A height as a number whose order is that of heights, -0 and 0 being one.

@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "storage/attributes.h"
+#include "storage/box_lanes.h"
 #include "storage/descriptor.h"
 #include "storage/page_columns.h"
 #include "storage/page_store.h"
+#include "storage/pending_split.h"
 #include "storage/short_float.h"
 #include "storage/star.h"
 
@@ -23,18 +25,21 @@ namespace ptin {
 
 class PageRun;
 
+/// Most records of a run. Runs begin where runs of rings begin.
+inline constexpr std::uint32_t kRecordRun = 64;
+static_assert(kRecordRun % layout::kRingRun == 0);
+
 /// How the corners of a ring are laid out.
 struct RingShape {
   unsigned degree = 0, offset_bits = 0, height_bits = 0, death_bits = 0, corner_bits = 0;
-  [[nodiscard]] std::size_t bits() const noexcept { return std::size_t{degree} * corner_bits; }
 };
 
-/// A ring of a page, from which the next ones are found without a look at those before it.
-struct RingPlace {
-  std::size_t record = SIZE_MAX;  ///< None yet.
-  std::size_t bit = 0;            ///< Where it begins in the page.
-  RingShape shape;
-  bool is_sound = false;  ///< It lies where rings lie.
+/// Where the rings of a run's records lie in the page, and bits a corner.
+struct RunRings {
+  std::array<std::int64_t, kRecordRun> bit, corner_bits;  // NOLINT: written before read
+  std::array<std::int64_t, kRecordRun> beyond;            ///< Negative: there is no ring.
+  /// False when the ring cannot be one, or would not lie where rings lie.
+  [[nodiscard]] bool is_sound(std::uint32_t k) const noexcept { return beyond[k] >= 0; }
 };
 
 /// What the corners of a ring, and its triangles, span.
@@ -48,6 +53,16 @@ struct RingSpan {
 /// The height of u, and the ends of the record's interval, as ordered numbers without wrap-around.
 struct OrderedInterval {
   std::uint64_t height, low, high;
+};
+
+/// What a page's descriptor admits of its records, as their columns have it.
+struct HeadBounds {
+  /// REQUIRES: is_sound(d, heights).
+  HeadBounds(const layout::NodeEntry& d, HeightType type) noexcept;
+
+  lanes::Int4 sides;                                 ///< Of the rois, maxima as ~max.
+  std::int64_t low, high;                            ///< Ordered heights.
+  std::int64_t error_min, error_max, deviation_max;  ///< Bits of short numbers.
 };
 
 /// A page. Any bytes are safe to ask: an answer of false means that a field cannot be what was
@@ -77,17 +92,20 @@ class RecordPage {
   /// other records nothing but the attributes is looked at.
   /// @throws Error as decode()
   void decode_matching(const AttributePredicate& predicate, std::vector<VertexSplit>& out) const;
+  void decode_matching(const AttributePredicate& predicate, std::vector<PendingSplit>& out) const;
 
-  /// Everything of a record but w, vl, vr and what follows from its ring. Coordinates are on the
-  /// grid, and the roi holds u. REQUIRES: all columns of the run are taken, as for what follows.
+  /// Everything of a record but w, vl, vr and what follows from its ring. The descriptor admits it,
+  /// and the roi holds u. REQUIRES: all columns of the run are taken, as for what follows.
   [[nodiscard]] bool head(const PageRun& run, std::uint32_t k, VertexSplit& r) const noexcept;
+  /// Finds the rings of a run's records.
+  void find_rings(const PageRun& run, RunRings& out) const noexcept;
   /// A record. u, w, vl and vr differ and lie in the roi.
-  /// @param place  Place of a record not behind this one; becomes that of this record.
-  [[nodiscard]] bool split(const PageRun& run, std::uint32_t k, RingPlace& place,
+  /// @param rings  Those of the run.
+  [[nodiscard]] bool split(const PageRun& run, std::uint32_t k, const RunRings& rings,
                            VertexSplit& r) const noexcept;
   /// Appends the ring of a record whose head is `r`: is_star() is true of it.
   /// @param span  Becomes what the ring spans.
-  [[nodiscard]] bool ring(const PageRun& run, std::uint32_t k, RingPlace& place,
+  [[nodiscard]] bool ring(const PageRun& run, std::uint32_t k, const RunRings& rings,
                           const VertexSplit& r, std::vector<RingCorner>& out, RingSpan& span) const;
 
   /// @throws Error corruption  always: `record` is not sound
@@ -96,21 +114,39 @@ class RecordPage {
  private:
   /// Whether the descriptor admits a star.
   [[nodiscard]] bool admits(const VertexSplit& r, const RingSpan& span) const noexcept;
-  template <class Bounds>
-  void decode_within(const Bounds& bounds, const AttributePredicate* predicate,
-                     std::vector<VertexSplit>& out) const;
-  [[nodiscard]] bool find(const PageRun& run, std::uint32_t k, RingPlace& place) const noexcept;
-  [[nodiscard]] bool ends_of(const RingPlace& place, VertexSplit& r) const noexcept;
-  [[nodiscard]] std::uint64_t corner_offset(const RingShape& shape, std::size_t bit) const noexcept;
-  [[nodiscard]] bool is_void(const RingShape& shape, std::size_t bit) const noexcept;
+  /// Where a record lies, in registers: u's key, its position twice and its roi.
+  struct OwnPlace {
+    VertexKey key;
+    lanes::Int4 u_twice, roi;
+    lanes::Int4 outside;  ///< Bits are set where the roi is none, or not one of the page.
+  };
+  template <class Record>
+  void decode_wanted(const AttributePredicate* predicate, std::vector<Record>& out) const;
+  [[nodiscard]] OwnPlace own_place(const PageRun& run, std::uint32_t k) const noexcept;
+  template <class Record>
+  [[nodiscard]] bool head_of(const PageRun& run, std::uint32_t k, Record& r) const noexcept;
+  template <class Record>
+  [[nodiscard]] static bool take_flags(std::uint64_t flags, Record& r) noexcept;
+  template <class Record>
+  [[nodiscard]] bool ends_of(const PageRun& run, std::uint32_t k, const RunRings& rings,
+                             const OwnPlace& own, Record& r) const noexcept;
+  template <class Record>
+  [[nodiscard]] bool split_of(const PageRun& run, std::uint32_t k, const RunRings& rings,
+                              Record& r) const noexcept;
+  [[nodiscard]] RingShape shape_of(const PageRun& run, std::uint32_t k) const noexcept;
+  [[nodiscard]] std::uint64_t bits_from(std::size_t bit) const noexcept;
+  [[nodiscard]] lanes::Int4 corner_offsets(unsigned width, std::size_t bit,
+                                           std::size_t other_bit) const noexcept;
+  [[nodiscard]] bool is_void(std::int64_t corner_bits, std::size_t bit) const noexcept;
   template <class Visit>
-  void for_each_corner(const RingPlace& place, const Visit& visit) const;
+  void for_each_corner(const RingShape& shape, std::size_t bit, const Visit& visit) const;
 
   const std::string& path_;
   PageId id_;
   layout::NodeEntry descriptor_;
   HeightEncoding heights_;
   std::span<const std::byte> bytes_;
+  HeadBounds bounds_;
   PageColumns columns_;
 };
 
@@ -118,9 +154,7 @@ class RecordPage {
 /// load and a shift for some of them then, and nothing is looked up between. A column is taken once.
 class PageRun {
  public:
-  /// Most records of a run. Runs begin where runs of rings begin.
-  static constexpr std::uint32_t kMost = 64;
-  static_assert(kMost % layout::kRingRun == 0);
+  static constexpr std::uint32_t kMost = kRecordRun;
 
   /// @param page  Borrowed.
   explicit PageRun(const RecordPage& page) noexcept : page_(page) {}
@@ -140,11 +174,7 @@ class PageRun {
     take_some(column, all());
     return numbers_[static_cast<std::size_t>(column)].data();
   }
-  void take_all() noexcept {
-    for (std::size_t c = 0; c < kPageColumns; ++c) {
-      take(static_cast<PageColumn>(c));
-    }
-  }
+  void take_all() noexcept;
   /// Takes the numbers of some records out: of record k where bit k is set.
   void take_some(PageColumn column, std::uint64_t records) noexcept {
     const std::uint64_t missing = records & ~taken_[static_cast<std::size_t>(column)];

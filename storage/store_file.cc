@@ -82,6 +82,18 @@ void append(const StoreFile& store, PageId id, Records& out, IoCounters& counter
   }
 }
 
+template <class Record>
+std::uint32_t append_matching(const StoreFile& store, PageId id,
+                              const AttributePredicate& predicate, std::vector<Record>& out,
+                              IoCounters& counters) {
+  std::uint32_t examined = 0;
+  append(store, id, out, counters, [&](const RecordPage& page) {
+    examined = page.records();
+    page.decode_matching(predicate, out);
+  });
+  return examined;
+}
+
 }  // namespace
 
 StoreFile::StoreFile(std::unique_ptr<ReadOnlyFile> file, PageAccess access)
@@ -202,12 +214,12 @@ void StoreFile::read_starred(PageId id, StarredRecords& out, IoCounters& counter
 
 std::uint32_t StoreFile::read_matching(PageId id, const AttributePredicate& predicate,
                                        std::vector<VertexSplit>& out, IoCounters& counters) const {
-  std::uint32_t examined = 0;
-  append(*this, id, out, counters, [&](const RecordPage& page) {
-    examined = page.records();
-    page.decode_matching(predicate, out);
-  });
-  return examined;
+  return append_matching(*this, id, predicate, out, counters);
+}
+
+std::uint32_t StoreFile::read_matching(PageId id, const AttributePredicate& predicate,
+                                       std::vector<PendingSplit>& out, IoCounters& counters) const {
+  return append_matching(*this, id, predicate, out, counters);
 }
 
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,

@@ -19,6 +19,7 @@
 #include "storage/file/replaced_file.h"
 #include "storage/index.h"
 #include "storage/page_store.h"
+#include "storage/pending_split.h"
 #include "storage/star.h"
 #include "storage/store_facts.h"
 
@@ -132,6 +133,8 @@ class StoreFile {
   /// page.
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
                               std::vector<VertexSplit>& out, IoCounters& counters) const;
+  std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
+                              std::vector<PendingSplit>& out, IoCounters& counters) const;
 
   /// Announces pages that the directory named: each alone, since few are wanted of many.
   void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept;

@@ -68,7 +68,8 @@ struct EndKeys {
 
 /// Finds the first triangle of w whose next corner is vl, and vl.
 template <class Ends>
-void find_first(const Tin& tin, VertexId w, const Ends& ends, Fan& fan) {
+[[gnu::always_inline]] inline void find_first(const Tin& tin, VertexId w, const Ends& ends,
+                                              Fan& fan) {
   const Triangle* const triangles = tin.triangles.data();
   const Vertex* const vertices = tin.vertices.data();
   const TriangleId start = vertices[w].triangle;
@@ -103,7 +104,7 @@ void replace_corner(Tin& tin, TriangleId t, TriangleId last, VertexId was, Verte
 /// the fan does not fit, the triangles from `first` to `last` have been changed already, and the
 /// caller changes them back.
 template <class Ends>
-Fan move_fan(Tin& tin, const SplitSite& site, const Ends& ends) {
+[[gnu::always_inline]] inline Fan move_fan(Tin& tin, const SplitSite& site, const Ends& ends) {
   Fan fan;
   find_first(tin, site.w, ends, fan);
   if (fan.first == kNone) {
@@ -145,9 +146,11 @@ Fan move_fan(Tin& tin, const SplitSite& site, const Ends& ends) {
   }
 }
 
+// Inlined, as the functions before it: a Fan that is handed over by its address lies in memory, and
+// the walk waits for it.
 /// True when the sides of the split fit. A side that exists is a strictly counter-clockwise
 /// triangle. A side that does not exist lies flat on the border.
-bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
+[[gnu::always_inline]] inline bool sides_fit(const Tin& tin, const SplitSite& s, const Fan& fan) {
   const Offset to_w = offset(tin.position(s.u), tin.position(s.w));
   const std::int64_t left = turn(to_w, fan.to_vl);
   const std::int64_t right = turn(fan.to_vr, to_w);

@@ -76,6 +76,12 @@ class VertexTable {
     return slots_[place(tin, key)].vertex;
   }
 
+  /// The vertex in the first slot where find() will look, or kNone: mostly that of the key. No vertex
+  /// is looked at.
+  [[nodiscard]] VertexId guess(VertexKey key) const noexcept {
+    return slots_[home(hash_of(key))].vertex;
+  }
+
   /// Asks the processor to fetch the slot that find() or insert() will look at.
   void prefetch(VertexKey key) const noexcept { ptin::prefetch(&slots_[home(hash_of(key))]); }
 

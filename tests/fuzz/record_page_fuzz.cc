@@ -49,15 +49,16 @@ void check(const VertexSplit& r, std::span<const RingCorner> ring, const HeightE
 void ask_from_the_end(const RecordPage& page, const StarredRecords& records) {
   std::vector<RingCorner> ring;
   RingSpan span;
+  RunRings rings;
   for (PageRun run(page); run.next();) {
     run.take_all();
+    page.find_rings(run, rings);
     for (std::uint32_t k = run.count(); k-- > 0;) {
       const std::size_t i = run.first() + k;
-      RingPlace place;
       VertexSplit r;
       ring.clear();
-      const bool is_sound = page.head(run, k, r) && page.ring(run, k, place, r, ring, span);
-      const bool is_split = page.split(run, k, place, r);
+      const bool is_sound = page.head(run, k, r) && page.ring(run, k, rings, r, ring, span);
+      const bool is_split = page.split(run, k, rings, r);
       static_cast<void>(run.attributes(k));
       if (!records.empty()) {
         require(is_sound && is_split && r == records.splits[i] &&

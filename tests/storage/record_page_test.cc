@@ -113,18 +113,18 @@ RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
   const PackedPage bytes = packed_page(records, strange.heights(), 65536);
   const StarredRecords expected = decoded_page(bytes, strange.heights());
   const RecordPage page(kPageName, PageId{0}, bytes.entry, strange.heights(), bytes.bytes);
-  RingPlace place;
+  RunRings rings;
   for (int asked = 0; asked < 40; ++asked) {
     const auto i = *rc::gen::inRange<std::size_t>(0, page.records());
-    place = *rc::gen::arbitrary<bool>() ? RingPlace{} : place;
     VertexSplit r, head;
     std::vector<RingCorner> ring;
     const PageRun run = run_of(page, i);
     const auto k = static_cast<std::uint32_t>(i) - run.first();
-    RC_ASSERT(page.split(run, k, place, r));
+    page.find_rings(run, rings);
+    RC_ASSERT(page.split(run, k, rings, r));
     RC_ASSERT(page.head(run, k, head));
     RingSpan span;
-    RC_ASSERT(page.ring(run, k, place, head, ring, span));
+    RC_ASSERT(page.ring(run, k, rings, head, ring, span));
     expect_spanned(r, ring, span, strange.heights().type);
     RC_ASSERT(r == expected.splits[i]);
     RC_ASSERT(std::ranges::equal(ring, expected.ring(i)));

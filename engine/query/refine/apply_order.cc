@@ -92,6 +92,11 @@ class Cells {
   std::int64_t origin_x_ = 0, origin_y_ = 0;
 };
 
+/// What a split is sorted by. Splits take 64 bytes each, so they are looked at once.
+struct SortedBy {
+  std::uint32_t cell;
+  std::uint16_t rank;
+};
 /// A split on its way through the two sorts.
 struct Sorted {
   std::uint32_t split, cell;
@@ -109,20 +114,27 @@ void begin_each(std::vector<std::uint32_t>& next) {
 
 std::vector<std::uint32_t> order_of(std::span<const PendingSplit> splits) {
   const Cells cells(splits);
-  RankOrder ranks(splits);
   std::vector<std::uint32_t> order(splits.size());
   if (cells.is_one()) {
+    RankOrder ranks(splits);
     for (std::uint32_t i = 0; i < splits.size(); ++i) {
       order[ranks.take(splits[i].rank)] = i;
     }
     return order;
   }
-  std::vector<Sorted> by_rank(splits.size());
+  RankOrder ranks;
+  std::vector<SortedBy> by(splits.size());
   std::vector<std::uint32_t> next(cells.numbers(), 0);
-  for (std::uint32_t i = 0; i < splits.size(); ++i) {
+  for (std::size_t i = 0; i < splits.size(); ++i) {
     const std::uint32_t cell = cells.number_of(splits[i].roi);
+    by[i] = {cell, splits[i].rank};
     ++next[cell];
-    by_rank[ranks.take(splits[i].rank)] = {i, cell};
+    ranks.count(splits[i].rank);
+  }
+  ranks.begin();
+  std::vector<Sorted> by_rank(splits.size());
+  for (std::uint32_t i = 0; i < splits.size(); ++i) {
+    by_rank[ranks.take(by[i].rank)] = {i, by[i].cell};
   }
   begin_each(next);
   for (const Sorted& s : by_rank) {

@@ -56,7 +56,8 @@ void refuse_too_many(std::span<const PendingSplit> splits, const QueryContext& c
 }
 
 /// Fetches into the caches, ahead of the splits, what they will touch: the record, its slots in the
-/// table of vertices, w, the triangle known of w, and what lies around that.
+/// table of vertices, w, whose key the table looks at, the triangle known of w, and what lies around
+/// that.
 /// Looks at the mesh as it is now: where the mesh changes before the split comes, the split misses
 /// the cache, and nothing else happens.
 class StarFetcher {
@@ -65,8 +66,7 @@ class StarFetcher {
 
   /// Steps of the pipeline: how many splits after the fetch of its record a split reaches each of
   /// them. The last one applies the split.
-  static constexpr std::size_t kSlots = 8, kEnter = 16, kTriangle = 24, kNeighbours = 32,
-                               kApply = 40;
+  static constexpr std::size_t kSlots = 8, kVertex = 16, kEnter = 24, kNeighbours = 32, kApply = 40;
 
   static void fetch_record(const PendingSplit& s) noexcept {
     const auto* const bytes = reinterpret_cast<const char*>(&s);  // may lie across two lines
@@ -77,7 +77,10 @@ class StarFetcher {
     ids.prefetch(s.u);
     ids.prefetch(s.w);
   }
-  void fetch_vertex(VertexId w) const noexcept { prefetch(&tin_.vertices[w]); }
+  void fetch_vertex(const PendingSplit& s, const VertexTable& ids) const noexcept {
+    const VertexId w = ids.guess(s.w);
+    prefetch(&tin_.vertices[w == kNone ? 0 : w]);
+  }
   void fetch_triangle(VertexId w) const noexcept { fetch(tin_.vertices[w].triangle); }
   // Fetches the neighbour and the corner that are not around w too: finding out which they are would
   // cost more.
@@ -124,6 +127,55 @@ Refinement::Refinement(const Tin& t0, bool track_pages) : tin_(t0), track_pages_
   }
 }
 
+/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split. One
+/// word is returned: a pair would be stored in parts, and loaded whole as soon as that is done.
+[[gnu::always_inline]] inline VertexId Refinement::enter(const PendingSplit& s, VertexId u,
+                                                         const QueryContext& context) {
+  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
+  const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
+  tin_.has_height[u] = is_void ? 0 : 1;
+  has_void_vertex_ |= is_void;
+  if (!ids_.insert(tin_, u)) [[unlikely]] {
+    throw_refused(s, "its vertex is in the mesh already", context);
+  }
+  if (track_pages_) {
+    vertex_pages_[u] = s.page;
+  }
+  const VertexId w = ids_.find(tin_, s.w);
+  if (w == kNone) [[unlikely]] {
+    throw_not_made(s, context);
+  }
+  return w;
+}
+
+// Inlined, as enter(): to save and restore the registers takes forty instructions a split.
+[[gnu::always_inline]] inline void Refinement::apply_one(const PendingSplit& s, const Resolved& r,
+                                                         const Batch& batch,
+                                                         const QueryContext& context) {
+  SplitSite site = site_of(r.u, r.w, kNone, kNone, s.flags);
+  const bool w_is_there = tin_.vertices[r.w].triangle != kNone;
+  // A record with one side (or, damaged, with none) does not use the other place, which may not
+  // exist.
+  const TriangleId left = triangle_place(batch, r.triangle);
+  const TriangleId right = triangle_place(batch, r.triangle + (site.has_left ? 1 : 0));
+  if (!w_is_there || !split_into(tin_, site, {s.vl, s.vr}, left, right)) [[unlikely]] {
+    if (ids_.find(tin_, s.vl) == kNone || ids_.find(tin_, s.vr) == kNone) {
+      throw_not_made(s, context);
+    }
+    throw_refused(s, "it does not fit the mesh", context);
+  }
+  if (has_void_vertex_ && !classes_fit(tin_, site)) [[unlikely]] {
+    throw_refused(s, "its classes do not fit its heights", context);
+  }
+  if (track_pages_) {
+    Star star;
+    walk_star(tin_, r.u, star);
+    for (const TriangleId t : star.triangles) {
+      triangle_pages_[t] = vertex_pages_[r.u];
+    }
+  }
+}
+
 void Refinement::apply(std::span<const PendingSplit> splits, QueryContext& context) {
   static constexpr std::size_t kFew = 4096;  // splits of a mesh that stays in the caches anyway
   refuse_too_many(splits, context);
@@ -144,8 +196,8 @@ void Refinement::apply_one_by_one(std::span<const PendingSplit> splits, const Ba
   std::uint32_t triangles = 0;
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const PendingSplit& s = splits[order_[i]];
-    Resolved r = enter(s, vertex_place(batch, i), context);
-    r.triangle = triangles;
+    const VertexId u = vertex_place(batch, i);
+    const Resolved r{u, enter(s, u, context), triangles};
     triangles += triangles_of(s.flags);
     apply_one(s, r, batch, context);
   }
@@ -175,16 +227,17 @@ void Refinement::apply_in_pipeline(std::span<const PendingSplit> splits, const B
     if (const std::size_t i = at(F::kSlots); i < count) {
       F::fetch_slots(splits[order_[i]], ids_);
     }
+    if (const std::size_t i = at(F::kVertex); i < count) {
+      fetcher.fetch_vertex(splits[order_[i]], ids_);
+    }
     if (const std::size_t i = at(F::kEnter); i < count) {
       Resolved& r = ring[i % kRing];
       const PendingSplit& s = splits[order_[i]];
-      r = enter(s, vertex_place(batch, i), context);
+      r.u = vertex_place(batch, i);
+      r.w = enter(s, r.u, context);
       r.triangle = triangles;
       triangles += triangles_of(s.flags);
-      fetcher.fetch_vertex(r.w);
-    }
-    if (const std::size_t i = at(F::kTriangle); i < count) {
-      fetcher.fetch_triangle(ring[i % kRing].w);
+      fetcher.fetch_triangle(r.w);
     }
     if (const std::size_t i = at(F::kNeighbours); i < count) {
       fetcher.fetch_neighbours(ring[i % kRing].w);
@@ -237,52 +290,6 @@ void Refinement::forget_places(const Batch& batch) {
   };
   drop(free_vertices_, batch.vertices);
   drop(free_triangles_, batch.triangles);
-}
-
-/// Puts the new vertex in its place, in no triangle yet, and looks up the vertex w of its split.
-Refinement::Resolved Refinement::enter(const PendingSplit& s, VertexId u,
-                                       const QueryContext& context) {
-  tin_.vertices[u] = {point_of(s.u), s.height, kNone};
-  const bool is_void = (s.flags & VertexSplit::kVertexVoid) != 0;
-  tin_.has_height[u] = is_void ? 0 : 1;
-  has_void_vertex_ |= is_void;
-  if (!ids_.insert(tin_, u)) [[unlikely]] {
-    throw_refused(s, "its vertex is in the mesh already", context);
-  }
-  if (track_pages_) {
-    vertex_pages_[u] = s.page;
-  }
-  const VertexId w = ids_.find(tin_, s.w);
-  if (w == kNone) [[unlikely]] {
-    throw_not_made(s, context);
-  }
-  return {u, w, 0};
-}
-
-void Refinement::apply_one(const PendingSplit& s, const Resolved& r, const Batch& batch,
-                           const QueryContext& context) {
-  SplitSite site = site_of(r.u, r.w, kNone, kNone, s.flags);
-  const bool w_is_there = tin_.vertices[r.w].triangle != kNone;
-  // A record with one side (or, damaged, with none) does not use the other place, which may not
-  // exist.
-  const TriangleId left = triangle_place(batch, r.triangle);
-  const TriangleId right = triangle_place(batch, r.triangle + (site.has_left ? 1 : 0));
-  if (!w_is_there || !split_into(tin_, site, {s.vl, s.vr}, left, right)) [[unlikely]] {
-    if (ids_.find(tin_, s.vl) == kNone || ids_.find(tin_, s.vr) == kNone) {
-      throw_not_made(s, context);
-    }
-    throw_refused(s, "it does not fit the mesh", context);
-  }
-  if (has_void_vertex_ && !classes_fit(tin_, site)) [[unlikely]] {
-    throw_refused(s, "its classes do not fit its heights", context);
-  }
-  if (track_pages_) {
-    Star star;
-    walk_star(tin_, r.u, star);
-    for (const TriangleId t : star.triangles) {
-      triangle_pages_[t] = vertex_pages_[r.u];
-    }
-  }
 }
 
 }  // namespace ptin

@@ -98,7 +98,7 @@ class Refinement {
                : batch.first_triangle + static_cast<TriangleId>(i - free_triangles_.size());
   }
   [[nodiscard]] Batch reserve(std::span<const PendingSplit> splits, const QueryContext& context);
-  [[nodiscard]] Resolved enter(const PendingSplit& split, VertexId u, const QueryContext& context);
+  [[nodiscard]] VertexId enter(const PendingSplit& split, VertexId u, const QueryContext& context);
   void apply_one(const PendingSplit& split, const Resolved& resolved, const Batch& batch,
                  const QueryContext& context);
   void apply_one_by_one(std::span<const PendingSplit> splits, const Batch& batch,

@@ -20,13 +20,22 @@ namespace ptin {
 /// order.
 class RankOrder {
  public:
+  RankOrder() = default;
   explicit RankOrder(std::span<const PendingSplit> splits) {
     for (const PendingSplit& s : splits) {
-      if (s.rank >= next_.size()) [[unlikely]] {
-        next_.resize(std::size_t{s.rank} + 1);
-      }
-      ++next_[s.rank];
+      count(s.rank);
     }
+    begin();
+  }
+  /// Counts a record. Each comes before begin().
+  void count(std::uint16_t rank) {
+    if (rank >= next_.size()) [[unlikely]] {
+      next_.resize(std::size_t{rank} + 1);
+    }
+    ++next_[rank];
+  }
+  /// Turns the counts into places.
+  void begin() noexcept {
     std::uint32_t before = 0;
     for (std::size_t rank = next_.size(); rank-- > 0;) {
       before += std::exchange(next_[rank], before);
@@ -42,17 +51,16 @@ class RankOrder {
 /// A record's split in local indices.
 [[nodiscard]] inline SplitSite site_of(VertexId u, VertexId w, VertexId vl, VertexId vr,
                                        std::uint32_t flags) noexcept {
-  const auto class_of = [flags](std::uint32_t bit) {
-    return (flags & bit) != 0 ? TriangleClass::kVoid : TriangleClass::kSurface;
-  };
+  static_assert(static_cast<int>(TriangleClass::kVoid) == 1);
+  const auto has = [flags](std::uint32_t bit) { return flags / bit % 2; };  // without branches
   return {u,
           w,
           vl,
           vr,
-          (flags & VertexSplit::kNoLeft) == 0,
-          (flags & VertexSplit::kNoRight) == 0,
-          class_of(VertexSplit::kLeftVoid),
-          class_of(VertexSplit::kRightVoid)};
+          has(VertexSplit::kNoLeft) == 0,
+          has(VertexSplit::kNoRight) == 0,
+          static_cast<TriangleClass>(has(VertexSplit::kLeftVoid)),
+          static_cast<TriangleClass>(has(VertexSplit::kRightVoid))};
 }
 
 /// Refuses a record that does not fit the mesh.

@@ -28,14 +28,9 @@ void read_pages(const StoreFile& store, std::span<const PageId> pages,
                 std::vector<PendingSplit>& out) {
   store.pages().announce(pages, context.cost.io);
   const std::size_t before = out.size();
-  std::vector<VertexSplit> records;
   for (const PageId page : pages) {
     context.check_stop();
-    records.clear();
-    context.cost.records_examined += store.read_matching(page, predicate, records, context.cost.io);
-    for (const VertexSplit& r : records) {
-      out.push_back(pending_of(r, page));
-    }
+    context.cost.records_examined += store.read_matching(page, predicate, out, context.cost.io);
   }
   context.cost.records_retrieved += out.size() - before;
 }

@@ -10,37 +10,17 @@
 
 #include "engine/query/select/accounting.h"
 #include "storage/index.h"
+#include "storage/pending_split.h"
 #include "storage/store_file.h"
 
 namespace ptin {
 
-/// What is kept of a record between reading and applying it: 64 bytes.
-struct PendingSplit {
-  VertexKey u, w, vl, vr;
-  HeightBits height;
-  std::uint16_t rank;
-  std::uint16_t flags;  ///< VertexSplit::Flag.
-  float error;
-  /// Contained in the roi of each record that it needs: refine/apply_order.h orders by it.
-  GridBox roi;
-  std::uint32_t page;  ///< Index of its page, for errors and pictures; modulo 2^32.
-};
-static_assert(sizeof(PendingSplit) == 64);
-
-/// The part of a record that applying needs.
-[[nodiscard]] inline PendingSplit pending_of(const VertexSplit& r, PageId page) noexcept {
-  return {key_of(r.u),  key_of(r.w),
-          key_of(r.vl), key_of(r.vr),
-          r.height,     r.rank,
-          r.flags,      r.error,
-          r.roi,        static_cast<std::uint32_t>(index_of(page))};
-}
-
 /// How many triangles a split adds: one at a border, otherwise two. None only for a damaged record,
 /// which split() refuses.
 [[nodiscard]] constexpr std::uint32_t triangles_of(std::uint32_t flags) noexcept {
-  return ((flags & VertexSplit::kNoLeft) == 0 ? 1 : 0) +
-         ((flags & VertexSplit::kNoRight) == 0 ? 1 : 0);
+  static_assert(VertexSplit::kNoRight == 2 * VertexSplit::kNoLeft);
+  constexpr std::uint8_t kTriangles[] = {2, 1, 1, 0};  // without branches
+  return kTriangles[flags / VertexSplit::kNoLeft % 4];
 }
 
 /// Bytes that reading and applying `records` records take at most: records, mesh and key table.
