@@ -20,7 +20,8 @@ namespace {
 /// A store by its first bytes; a URL, of which GDAL reads none, by its name.
 int identify(GDALOpenInfo* info) {
   if (info->nHeaderBytes >= static_cast<int>(layout::kMagic.size())) {
-    return static_cast<int>(std::memcmp(info->pabyHeader, layout::kMagic.data(), layout::kMagic.size()) == 0);
+    return static_cast<int>(
+        std::memcmp(info->pabyHeader, layout::kMagic.data(), layout::kMagic.size()) == 0);
   }
   bool is_ours = false;
   static_cast<void>(guarded([&] {

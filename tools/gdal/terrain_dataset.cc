@@ -30,7 +30,7 @@ double rounded_to_125(double number) {
 
 /// Width and height of a pixel, map units: of a raster its own, of points such that there are about
 /// as many pixels as samples. (The grid of points is far finer than they are.)
-std::array<double, 2> pixel_size_for(const StoreFile& store, const Window& bounds) {
+std::array<double, 2> own_pixel_for(const StoreFile& store, const Window& bounds) {
   if (const auto own = own_pixel_of(store)) return {own->x, own->y};
   const double width = bounds.max_x - bounds.min_x;
   const double height = bounds.max_y - bounds.min_y;
@@ -41,14 +41,16 @@ std::array<double, 2> pixel_size_for(const StoreFile& store, const Window& bound
   return {side, side};
 }
 
-RasterRequest pixels_of(const StoreFile& store, const Window& bounds, const OpenOptions& options) {
-  if (!options.pixel_size) {
-    return pixels_in(std::nullopt, pixel_size_for(store, bounds), store.facts());
-  }
+RasterRequest pixels_of(const StoreFacts& facts, std::array<double, 2> own,
+                        const OpenOptions& options) {
+  if (!options.pixel_size) return pixels_in(std::nullopt, own, facts);
+  const double size = *options.pixel_size;
   try {
-    return pixels_in(std::nullopt, {*options.pixel_size, *options.pixel_size}, store.facts());
-  } catch (const Error& e) {
-    throw Error(e.code(), e.message(), "PIXEL_SIZE");
+    return pixels_in(std::nullopt, {size, size}, facts);
+  } catch (const Error&) {
+    refuse(
+        "the raster has fewer than 2 or more than 2^31 - 1 columns or rows of pixels of this size",
+        "PIXEL_SIZE");
   }
 }
 
@@ -58,7 +60,8 @@ TerrainDataset::TerrainDataset(const GDALOpenInfo& info)
     : terrain_(opened(info.pszFilename)),
       crs_(crs_facts(terrain_.store())),
       options_(open_options_of(info.papszOpenOptions)),
-      pixels_(pixels_of(terrain_.store(), bounds(), options_)) {
+      own_pixel_(own_pixel_for(terrain_.store(), bounds())),
+      pixels_(pixels_of(facts(), own_pixel_, options_)) {
   srs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   if (crs_.is_understood) srs_.importFromWkt(crs_.wkt.c_str());
   nRasterXSize = static_cast<int>(pixels_.pixels.width);
@@ -95,16 +98,16 @@ Window TerrainDataset::bounds() const noexcept {
   return {low.x, low.y, high.x, high.y};
 }
 
-DetailRequest TerrainDataset::detail_for_pixels(double times_wide, double times_high) const {
+DetailRequest TerrainDataset::detail_for_pixels(double area) const {
   DetailRequest detail;
   if (options_.error) {
     if (*options_.error > 0) detail.tolerance = options_.error;
     return detail;
   }
-  const double samples_of_pixel = times_wide * times_high;
-  if (samples_of_pixel <= 1) return detail;
+  const double samples = area / (own_pixel_[0] * own_pixel_[1]);  // of a pixel
+  if (samples < 1 + 1e-9) return detail;
   // The index is not asked about the window of the whole terrain, for which this is exact.
-  const double vertices = static_cast<double>(facts().source_samples) / samples_of_pixel;
+  const double vertices = static_cast<double>(facts().source_samples) / samples;
   IoCounters io;
   return detail_for(terrain_.store(), static_cast<std::uint64_t>(vertices) + 1, bounds(), io);
 }

@@ -3,6 +3,7 @@
 // A terrain as GDAL sees it: a raster of one band and layers of triangles and isolines, read only.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,14 +42,15 @@ class TerrainDataset final : public GDALDataset {
   /// The box of the samples, map units.
   [[nodiscard]] Window bounds() const noexcept;
 
-  /// The TIN for pixels so many times as wide and as high as those of the full raster. It is the same
-  /// for all windows, so that blocks of a raster fit together.
-  [[nodiscard]] DetailRequest detail_for_pixels(double times_wide, double times_high) const;
+  /// The TIN for pixels of an area, square map units. It is the same for all windows, so that blocks of
+  /// a raster fit together.
+  [[nodiscard]] DetailRequest detail_for_pixels(double area) const;
 
  private:
   Terrain terrain_;
   CrsFacts crs_;
   OpenOptions options_;
+  std::array<double, 2> own_pixel_;  ///< Width and height of a pixel that has one sample, about.
   RasterRequest pixels_;
   OGRSpatialReference srs_;
   std::vector<std::unique_ptr<OGRLayer>> layers_;

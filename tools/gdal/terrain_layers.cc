@@ -104,14 +104,17 @@ void TriangleLayer::find(const Window& window) {
 void TriangleLayer::fill(std::size_t i, OGRFeature& feature) const {
   const StoreFacts& facts = dataset().facts();
   std::array<GridPoint, 3> corners;
-  std::array<OGRPoint, 3> points;
+  OGRLinearRing ring;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vertex& vertex = tin_->vertices[tin_->triangles[surface_[i]].v[k]];
     corners[k] = vertex.position;
     const MapPoint at = facts.map.to_map(vertex.position.x, vertex.position.y);
-    points[k] = OGRPoint(at.x, at.y, facts.heights.height(vertex.height));
+    ring.addPoint(at.x, at.y, facts.heights.height(vertex.height));
   }
-  feature.SetGeometryDirectly(new OGRTriangle(points[0], points[1], points[2]));
+  ring.closeRings();
+  auto polygon = std::make_unique<OGRPolygon>();
+  polygon->addRing(&ring);
+  feature.SetGeometryDirectly(polygon.release());
   feature.SetFID(number_of(corners, facts.bounds));
 }
 

@@ -46,12 +46,13 @@ class FoundLayer : public OGRLayer, public OGRGetNextFeatureThroughRaw<FoundLaye
   std::size_t next_ = 0;
 };
 
-/// "triangles": those of the surface, TriangleZ. Without ERROR such that about 50 000 vertices meet
-/// the filter. A triangle has the same number whatever the filter is.
+/// "triangles": those of the surface as polygons, since not all programs know OGR's type for
+/// triangles. Without ERROR such that about 50 000 vertices meet the filter. A triangle has the same
+/// number whatever the filter is.
 class TriangleLayer final : public FoundLayer {
  public:
   explicit TriangleLayer(const TerrainDataset& dataset)
-      : FoundLayer(dataset, "triangles", wkbTriangleZ) {}
+      : FoundLayer(dataset, "triangles", wkbPolygon25D) {}
 
  private:
   void find(const Window& window) override;
