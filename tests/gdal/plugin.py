@@ -200,6 +200,11 @@ class Statistics(Case):
         low, high, mean, _ = data.GetRasterBand(1).ComputeStatistics(True)
         self.assertLess(abs(mean - heights(terrain("mountains")).mean()), 1.5)
 
+        # The same of a raster that is smaller than a block.
+        corner = opened(terrain("mountains"), "PIXEL_SIZE=300").GetRasterBand(1)
+        self.assertEqual(sum(corner.GetHistogram(600, 1600, 100, approx_ok=True)), 26 * 26)
+        self.assertLess(abs(corner.ComputeStatistics(True)[2] - corner.ReadAsArray().mean(dtype=float)), 1e-6)
+
     def test_nothing_is_written_beside_a_terrain(self):
         folder = scratch("alone")
         shutil.rmtree(folder, ignore_errors=True)

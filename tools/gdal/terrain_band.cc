@@ -74,6 +74,7 @@ CPLErr TerrainBand::ComputeRasterMinMax(int is_approximate, double* min_max) {
   return CE_None;
 }
 
+// NOLINTNEXTLINE(readability-function-size): GDAL's parameters
 CPLErr TerrainBand::ComputeStatistics(int is_approximate, double* min, double* max, double* mean,
                                       double* deviation, GDALProgressFunc progress, void* data) {
   double low = 0.0, high = 0.0, middle = 0.0, spread = 0.0;
@@ -102,10 +103,14 @@ CPLErr TerrainBand::IReadBlock(int column, int row, void* data) {
   return guarded([&] { sample(part, target, nullptr); }) ? CE_None : CE_Failure;
 }
 
+// NOLINTNEXTLINE(readability-function-size): GDAL's parameters
 CPLErr TerrainBand::IRasterIO(GDALRWFlag mode, int column, int row, int width, int height,
                               void* data, int columns, int rows, GDALDataType type,
                               GSpacing pixel_space, GSpacing line_space,
                               GDALRasterIOExtraArg* extra) {
+  // GDAL's statistics and histograms say 0 where pixels follow one another.
+  if (pixel_space == 0) pixel_space = GDALGetDataTypeSizeBytes(type);
+  if (line_space == 0) line_space = pixel_space * columns;
   Part part{1.0 * column, 1.0 * row, 1.0 * width, 1.0 * height};
   const bool has_fractions = extra != nullptr && extra->bFloatingPointWindowValidity != FALSE;
   if (has_fractions) part = {extra->dfXOff, extra->dfYOff, extra->dfXSize, extra->dfYSize};
@@ -116,9 +121,6 @@ CPLErr TerrainBand::IRasterIO(GDALRWFlag mode, int column, int row, int width, i
     return GDALRasterBand::IRasterIO(mode, column, row, width, height, data, columns, rows, type,
                                      pixel_space, line_space, extra);
   }
-  // GDAL's statistics and histograms say 0 where pixels follow one another.
-  if (pixel_space == 0) pixel_space = GDALGetDataTypeSizeBytes(type);
-  if (line_space == 0) line_space = pixel_space * columns;
   const Target target{data, columns, rows, type, pixel_space, line_space};
   return guarded([&] { sample(part, target, extra); }) ? CE_None : CE_Failure;
 }

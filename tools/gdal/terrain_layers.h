@@ -25,6 +25,7 @@ class FoundLayer : public OGRLayer, public OGRGetNextFeatureThroughRaw<FoundLaye
   OGRErr GetExtent(OGREnvelope* extent, int is_forced) override;
   using OGRLayer::GetExtent;
   int TestCapability(const char* capability) override;
+  // NOLINTNEXTLINE(readability-identifier-naming): GDAL's name
   OGRFeature* GetNextRawFeature();
   DEFINE_GET_NEXT_FEATURE_THROUGH_RAW(FoundLayer)
 
