@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -30,23 +29,6 @@ namespace ptin::tools {
 namespace {
 
 constexpr const char* kBlockSide = "512";
-
-/// The type of the pixels: of heights Float64 where Float32 does not hold every height of a vertex.
-/// Float32 holds whole multiples of a power of two that take at most 24 bits; it does not hold
-/// tenths.
-GDALDataType type_for(const StoreFacts& facts, PixelValue value) {
-  if (value == PixelValue::kHillshade) return GDT_Byte;
-  if (value != PixelValue::kHeight) return GDT_Float32;
-  const HeightEncoding& heights = facts.heights;
-  if (heights.type != HeightType::int32) return GDT_Float32;
-  int exponent = 0;
-  const bool is_power = std::frexp(heights.step, &exponent) == 0.5;
-  const double steps_to_offset = heights.offset / heights.step;
-  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
-  const bool fits = is_power && steps_to_offset == std::trunc(steps_to_offset) &&
-                    largest / heights.step <= 0x1p24;
-  return fits ? GDT_Float32 : GDT_Float64;
-}
 
 CPLStringList options_of(const RasterTarget& target, bool for_copy) {
   CPLStringList options;
@@ -189,13 +171,8 @@ class RasterWriter {
 
   [[nodiscard]] std::optional<double> value_of(const GridNormal& normal, std::int64_t column,
                                                std::int64_t row) const {
-    if (!(normal.z > 0)) return std::nullopt;
-    const PixelContent& content = target_.content;
-    const MapPoint centre = request_.lattice.centre(column, row);
-    const Slope slope = slope_of(normal, terrain_.store().facts(), per_map_unit_(centre));
-    if (content.value == PixelValue::kAspect) return aspect_of(slope);
-    if (content.value == PixelValue::kHillshade) return grey_of(content.light.on(slope));
-    return content.in_percent ? percent_of(slope) : degrees_of(slope);
+    return value_at(normal, target_.content, terrain_.store().facts(),
+                    per_map_unit_(request_.lattice.centre(column, row)));
   }
 
   const Terrain& terrain_;
@@ -216,31 +193,16 @@ void check_creation_options(GDALDriver* driver, const CPLStringList& options,
   }
 }
 
-/// The unit of the pixels; empty when it is unknown, or there is none.
-std::string unit_of(const RasterTarget& target) {
-  switch (target.content.value) {
-    case PixelValue::kHeight:
-      return target.crs.vertical_unit == "unknown" ? "" : target.crs.vertical_unit;
-    case PixelValue::kSlope:
-      return target.content.in_percent ? "percent" : "degree";
-    case PixelValue::kAspect:
-      return "degree";
-    case PixelValue::kHillshade:
-      break;
-  }
-  return {};
-}
-
 GDALDatasetUniquePtr create(const PendingFile& file, const RasterRequest& request,
                             const RasterTarget& target, const StoreFacts& facts) {
   GDALDriver& driver = driver_named("GTiff");
   const CPLStringList options = options_of(target, false);
   check_creation_options(&driver, options, target.path);
   CPLErrorReset();
-  GDALDatasetUniquePtr dataset(
-      driver.Create(file.temporary().c_str(), static_cast<int>(request.pixels.width),
-                    static_cast<int>(request.pixels.height), 1,
-                    type_for(facts, target.content.value), const_cast<char**>(options.List())));
+  GDALDatasetUniquePtr dataset(driver.Create(
+      file.temporary().c_str(), static_cast<int>(request.pixels.width),
+      static_cast<int>(request.pixels.height), 1, type_of_pixels(facts, target.content.value),
+      const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
   auto transform = geotransform_of(request);
   require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
@@ -248,7 +210,7 @@ GDALDatasetUniquePtr create(const PendingFile& file, const RasterRequest& reques
                   target.path);
   GDALRasterBand* band = dataset->GetRasterBand(1);
   require_done(band->SetNoDataValue(target.nodata), "cannot set the nodata value", target.path);
-  const std::string unit = unit_of(target);
+  const std::string unit = unit_of_pixels(target.content, target.crs);
   if (!unit.empty()) band->SetUnitType(unit.c_str());
   return dataset;
 }
@@ -289,14 +251,6 @@ void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTa
 }
 
 }  // namespace
-
-double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
-  constexpr double kUsual = -9999.0;
-  if (value == PixelValue::kHillshade) return 0.0;
-  if (value != PixelValue::kHeight || !(facts.min_height <= kUsual && kUsual <= facts.max_height))
-    return kUsual;
-  return static_cast<double>(std::numeric_limits<float>::lowest());
-}
 
 WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
                             const RasterTarget& target,

@@ -5,29 +5,14 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
-#include "tools/slope.h"
+#include "tools/export/pixel_value.h"
 
 namespace ptin::tools {
-
-/// What a pixel says of the surface at its centre.
-enum class PixelValue {
-  kHeight,
-  kSlope,     ///< 0 to 90 degrees, or percent.
-  kAspect,    ///< Degrees clockwise from north, of where the surface falls to.
-  kHillshade  ///< 1 to 255.
-};
-
-struct PixelContent {
-  PixelValue value = PixelValue::kHeight;
-  bool in_percent = false;  ///< Slopes.
-  Light light{315, 45};     ///< Hillshades.
-};
 
 struct RasterTarget {
   std::string path;
@@ -50,10 +35,8 @@ struct WrittenRaster {
   std::uint64_t surface_pixels = 0;  ///< Pixels whose centre lies on surface.
 };
 
-/// Samples the terrain as `request` says and writes what `target.content` names. Heights are
-/// Float32, or Float64 where Float32 does not hold every height of a vertex. Slopes and aspects are
-/// Float32, hillshades bytes, all three of the normal that the raster has at the pixel's centre,
-/// over ground there. A pixel without surface gets `nodata`, and so does the aspect of what is flat.
+/// Samples the terrain as `request` says and writes what `target.content` names, in pixels of
+/// type_of_pixels(). A pixel without a value gets `nodata`.
 ///
 /// Blocks are sampled together as far as memory allows, and written in an order that depends on the
 /// size of the raster alone. A COG is copied by GDAL, with its overviews, from a GeoTIFF beside it.
@@ -67,9 +50,5 @@ struct WrittenRaster {
 [[nodiscard]] WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
                                           const RasterTarget& target,
                                           const std::function<void(double)>& progress);
-
-/// A value for pixels without one: 0 of hillshades, else -9999; of heights the lowest float when
-/// -9999 lies between the terrain's least and largest height.
-[[nodiscard]] double default_nodata(const StoreFacts& facts, PixelValue value) noexcept;
 
 }  // namespace ptin::tools

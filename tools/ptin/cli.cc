@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal.h>
 #include <nlohmann/json.hpp>
@@ -244,6 +245,15 @@ std::string unknown_subcommand(std::span<const std::string> words) {
   return known ? std::string() : words[0];
 }
 
+/// A terrain is no source of another one, which the plugin of tools/gdal would make of it: so its
+/// driver is one of those that GDAL is to pass over, however often drivers are registered.
+void pass_over_terrains() {
+  std::string skipped = CPLGetConfigOption("GDAL_SKIP", "");
+  if (skipped.find("PTIN") != std::string::npos) return;
+  if (!skipped.empty()) skipped += skipped.find(',') == std::string::npos ? ' ' : ',';
+  CPLSetConfigOption("GDAL_SKIP", (skipped + "PTIN").c_str());
+}
+
 /// Writes a sentence about wrong use, and how to get help.
 /// @returns the exit status
 int report_wrong_use(const Command* command, const std::string& message, bool json) {
@@ -270,6 +280,7 @@ const char* exit_statuses() noexcept { return kExitStatuses; }
 void start_gdal(const Command& /*command*/, Context& /*context*/) {
   CPLSetErrorHandler(CPLQuietErrorHandler);
   silence_proj();
+  pass_over_terrains();
   GDALAllRegister();
 }
 

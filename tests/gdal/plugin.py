@@ -1,0 +1,420 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""GDAL reads terrains by gdal_PTIN.so: through its Python module, by its programs, by other programs that stand on it.
+
+usage: plugin.py PROGRAM DATA PLUGINS SCRATCH [CASE...]
+
+PROGRAM is ptin, DATA the folder tests/data, PLUGINS the folder with gdal_PTIN.so. Status 77, with a message, where GDAL's Python
+module is not installed. What stands on GDAL and is not installed (rasterio, MapServer) is passed over with a message.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+
+PROGRAM, DATA, PLUGINS, SCRATCH = (os.path.abspath(a) for a in sys.argv[1:5])
+os.environ["GDAL_DRIVER_PATH"] = PLUGINS  # before GDAL is loaded
+try:
+    import numpy
+    from osgeo import gdal, ogr
+except ImportError as e:
+    print("skipped: GDAL's Python module is not installed:", e)
+    sys.exit(77)
+
+gdal.DontUseExceptions()
+RANGE_SERVER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../support/range_server.py")
+KEPT = []
+
+
+def run(*command, status=0):
+    """Standard output and error of a program."""
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=SCRATCH, check=False)
+    if done.returncode != status:
+        raise AssertionError(f"{' '.join(command)}\nended with {done.returncode}\n{done.stdout}")
+    return done.stdout
+
+
+def scratch(name):
+    return os.path.join(SCRATCH, name)
+
+
+def source(name):
+    return os.path.join(DATA, name + "_257.tif")
+
+
+def terrain(name):
+    """A small real terrain, built once."""
+    path = scratch(name + ".ptin")
+    if not os.path.exists(path):
+        given = os.path.join(DATA, "ground_points.csv") if name == "points" else source(name)
+        run(PROGRAM, "build", given, "-o", path, "-q")
+    return path
+
+
+def opened(path, *options):
+    """A data set that stays open until the case ends: its bands and layers do not keep it."""
+    KEPT.append(gdal.OpenEx(path, gdal.OF_RASTER | gdal.OF_VECTOR | gdal.OF_READONLY, open_options=list(options)))
+    return KEPT[-1]
+
+
+def heights(path, *options, **window):
+    return opened(path, *options).ReadAsArray(**window)
+
+
+def failure(work):
+    """What `work` gives, and GDAL's last message."""
+    gdal.ErrorReset()
+    gdal.PushErrorHandler("CPLQuietErrorHandler")
+    try:
+        return work(), gdal.GetLastErrorMsg()
+    finally:
+        gdal.PopErrorHandler()
+
+
+def statistics(path):
+    """Size, least and largest value of a raster that a program wrote."""
+    data = gdal.Open(path)
+    array = data.ReadAsArray()
+    array = array[array != data.GetRasterBand(1).GetNoDataValue()]
+    return data.RasterXSize, data.RasterYSize, array.min(), array.max()
+
+
+class Case(unittest.TestCase):
+    def tearDown(self):
+        KEPT.clear()
+
+
+class Raster(Case):
+    def test_full_resolution_is_the_source(self):
+        for name, lone in ("mountains", 0), ("coast", 4):  # which no triangle of the source touches
+            a, b = opened(source(name)), opened(terrain(name))
+            self.assertEqual(a.GetGeoTransform(), b.GetGeoTransform())
+            self.assertTrue(a.GetSpatialRef().IsSame(b.GetSpatialRef()))
+            there = a.ReadAsArray() != (a.GetRasterBand(1).GetNoDataValue() or -32768)
+            ours = b.ReadAsArray() != b.GetRasterBand(1).GetNoDataValue()
+            self.assertEqual(numpy.count_nonzero(there & ~ours), lone)
+            self.assertFalse((ours & ~there).any())
+            self.assertTrue((a.ReadAsArray()[ours] == b.ReadAsArray()[ours]).all())
+
+    def test_tenths_are_read_without_rounding(self):
+        values = numpy.arange(40 * 30, dtype=float).reshape(30, 40) ** 2
+        data = gdal.GetDriverByName("GTiff").Create(scratch("tenths.tif"), 40, 30, 1, gdal.GDT_Float64)
+        data.SetGeoTransform([0, 1, 0, 30, 0, -1])
+        data.GetRasterBand(1).WriteArray(values)
+        data.GetRasterBand(1).SetScale(0.1)
+        del data
+        run(PROGRAM, "build", "tenths.tif", "-o", "tenths.ptin", "-q")
+        band = opened(scratch("tenths.ptin")).GetRasterBand(1)
+        self.assertEqual(band.DataType, gdal.GDT_Float64)
+        self.assertTrue((band.ReadAsArray() == values * 0.1).all())
+
+    def test_lines_and_windows_have_the_pixels_of_the_whole(self):
+        whole = heights(terrain("coast"))
+        band = opened(terrain("coast")).GetRasterBand(1)
+        lines = numpy.vstack([band.ReadAsArray(0, i, 257, 1) for i in range(257)])
+        self.assertTrue((lines == whole).all())
+        self.assertTrue((band.ReadAsArray(100, 50, 31, 77) == whole[50:127, 100:131]).all())
+        as_whole_numbers = band.ReadAsArray(0, 0, 257, 257, buf_type=gdal.GDT_Int16)
+        self.assertTrue((as_whole_numbers == whole).all())
+
+    def test_overviews_are_levels_that_fit_together(self):
+        data = opened(terrain("mountains"))
+        band = data.GetRasterBand(1)
+        self.assertEqual([(band.GetOverview(i).XSize, band.GetOverview(i).YSize) for i in range(band.GetOverviewCount())], [(129, 129)])
+        self.assertIsNone(band.GetOverview(1))
+        small = band.GetOverview(0).ReadAsArray()
+        self.assertTrue((small == band.ReadAsArray(buf_xsize=129, buf_ysize=129)).all())
+        # A window in the same pixels is asked with the same TIN.
+        quarter = band.ReadAsArray(0, 0, 128, 128, buf_xsize=64, buf_ysize=64)
+        whole = band.ReadAsArray(0, 0, 256, 256, buf_xsize=128, buf_ysize=128)
+        self.assertTrue((whole[:64, :64] == quarter).all())
+        # Neither a sample nor a mean: but near.
+        exact = heights(terrain("mountains"), "ERROR=0", buf_xsize=129, buf_ysize=129)
+        self.assertLess(numpy.sqrt(((small - exact) ** 2).mean()), 5)
+        self.assertTrue((small != exact).any())
+
+    def test_errors_are_kept(self):
+        exact = heights(terrain("mountains"))
+        for error in 1, 20:
+            far = abs(heights(terrain("mountains"), f"ERROR={error}") - exact).max()
+            self.assertTrue(error / 4 < far <= error, far)
+
+    def test_windows_between_pixels_are_honoured(self):
+        # A window of 2 x 2 pixels that begins in the middle of one, in 2 x 2: between four centres each.
+        xml = f"""<VRTDataset rasterXSize="2" rasterYSize="2"><VRTRasterBand dataType="Float32" band="1"><SimpleSource>
+            <SourceFilename>{terrain("mountains")}</SourceFilename><SrcRect xOff="10.5" yOff="20.5" xSize="2" ySize="2"/>
+            <DstRect xOff="0" yOff="0" xSize="2" ySize="2"/></SimpleSource></VRTRasterBand></VRTDataset>"""
+        whole = heights(terrain("mountains"))
+        shifted = gdal.Open(xml).ReadAsArray()
+        for j in range(2):
+            for i in range(2):
+                corners = whole[20 + j:22 + j, 10 + i:12 + i]
+                middle = [(corners[0, 0] + corners[1, 1]) / 2, (corners[0, 1] + corners[1, 0]) / 2]
+                self.assertIn(shifted[j, i], middle)
+
+    def test_no_frame_without_heights(self):
+        near = heights(terrain("mountains"), xoff=0, yoff=0, xsize=2, ysize=2, buf_xsize=64, buf_ysize=64)
+        self.assertTrue((near > 600).all())
+        run("gdalwarp", "-q", "-overwrite", "-tr", "7", "7", terrain("mountains"), "frame.tif")
+        self.assertGreater(gdal.Open(scratch("frame.tif")).ReadAsArray().min(), 600)
+
+    def test_slope_aspect_and_hillshade_are_those_of_export(self):
+        for what in "slope", "aspect", "hillshade":
+            run(PROGRAM, "export", terrain("mountains"), "--what", what, "-o", what + ".tif", "--overwrite", "-q")
+            a, b = opened(scratch(what + ".tif")).GetRasterBand(1), opened(terrain("mountains"), "BAND=" + what).GetRasterBand(1)
+            self.assertEqual((a.DataType, a.GetNoDataValue(), a.GetUnitType()), (b.DataType, b.GetNoDataValue(), b.GetUnitType()))
+            self.assertTrue((a.ReadAsArray() == b.ReadAsArray()).all())
+            self.assertIsNone(b.GetMinimum())
+
+    def test_points_have_pixels_as_dense_as_they_are(self):
+        data = opened(terrain("points"))
+        self.assertEqual((data.RasterXSize, data.RasterYSize), (120, 120))
+        self.assertEqual(data.GetGeoTransform()[1], 2)
+        x, y = data.GetGeoTransform()[0] + 31, data.GetGeoTransform()[3] - 51
+        told = run(PROGRAM, "locate", terrain("points"), str(x), str(y), "--json")
+        self.assertIn(f'"z":{data.ReadAsArray()[25, 15]:.6f}'[:-3], told.replace(" ", "").replace('"height"', '"z"'))
+        self.assertEqual(opened(terrain("points"), "PIXEL_SIZE=0.5").RasterXSize, 480)
+
+
+class Statistics(Case):
+    def test_range_is_that_of_the_header(self):
+        band = opened(terrain("mountains")).GetRasterBand(1)
+        self.assertEqual((band.GetMinimum(), band.GetMaximum()), (633, 1576))
+        self.assertEqual(band.ComputeRasterMinMax(True), (633, 1576))
+        low, high, mean, spread = band.ComputeStatistics(True)
+        self.assertEqual((low, high), (633, 1576))
+        self.assertEqual(band.GetStatistics(True, False)[:2], [low, high])
+        exact = heights(terrain("mountains"))
+        self.assertLess(abs(mean - exact.mean()), 2)
+        self.assertLess(abs(spread - exact.std()), 2)
+
+    def test_spacings_of_zero_mean_packed(self):
+        band = opened(terrain("coast")).GetRasterBand(1)
+        whole = heights(terrain("coast"))
+        counts = band.GetHistogram(-0.5, 767.5, 768, approx_ok=True)
+        share = numpy.count_nonzero(whole != band.GetNoDataValue()) / whole.size
+        self.assertTrue(0.9 < sum(counts) / share / 50 ** 2 < 1.2, sum(counts))
+        # GDAL asks for a small picture of the whole, in one call.
+        data = opened(terrain("mountains"), "PIXEL_SIZE=3")
+        low, high, mean, _ = data.GetRasterBand(1).ComputeStatistics(True)
+        self.assertLess(abs(mean - heights(terrain("mountains")).mean()), 1.5)
+
+        # The same of a raster that is smaller than a block.
+        corner = opened(terrain("mountains"), "PIXEL_SIZE=300").GetRasterBand(1)
+        self.assertEqual(sum(corner.GetHistogram(600, 1600, 100, approx_ok=True)), 26 * 26)
+        self.assertLess(abs(corner.ComputeStatistics(True)[2] - corner.ReadAsArray().mean(dtype=float)), 1e-6)
+
+    def test_nothing_is_written_beside_a_terrain(self):
+        folder = scratch("alone")
+        shutil.rmtree(folder, ignore_errors=True)
+        os.mkdir(folder)
+        path = shutil.copy(terrain("mountains"), folder)
+        run("gdalinfo", "-stats", "-hist", "-mm", path)
+        data = opened(path)
+        data.GetRasterBand(1).SetMetadataItem("a", "b")
+        data.GetRasterBand(1).GetDefaultHistogram()
+        del data
+        KEPT.clear()
+        self.assertEqual(os.listdir(folder), ["mountains.ptin"])
+
+
+class Layers(Case):
+    @staticmethod
+    def features(path, layer, *options, box=None):
+        data = opened(path, *options)
+        features = data.GetLayerByName(layer)
+        if box:
+            features.SetSpatialFilterRect(*box)
+        return {f.GetFID(): f.GetGeometryRef().Clone() for f in features}
+
+    def test_triangles_cover_the_terrain(self):
+        triangles = self.features(terrain("mountains"), "triangles", "ERROR=10")
+        self.assertAlmostEqual(sum(t.Area() for t in triangles.values()), (256 * 30) ** 2, delta=1)
+        self.assertEqual({t.GetGeometryType() for t in triangles.values()}, {ogr.wkbPolygon25D})
+        some = self.features(terrain("mountains"), "triangles", "ERROR=10", box=(378000, 3802000, 379000, 3803000))
+        self.assertTrue(10 < len(some) < len(triangles) / 10)
+        for number, triangle in some.items():  # the numbers do not depend on the filter
+            self.assertTrue(triangle.Equals(triangles[number]))
+        self.assertFalse(self.features(terrain("mountains"), "triangles", box=(0, 0, 1, 1)))
+        self.assertLess(len(self.features(terrain("coast"), "triangles")), 2 * 50000)
+
+    def test_isolines_are_those_of_the_program(self):
+        lines = self.features(terrain("coast"), "isolines", "INTERVAL=50")
+        run(PROGRAM, "isoline", terrain("coast"), "--interval", "50", "-o", "lines.gpkg", "--overwrite", "-q")
+        data = opened(scratch("lines.gpkg"))
+        known = [f.GetGeometryRef().Clone() for f in data.GetLayer(0)]
+        self.assertEqual(len(lines), len(known))
+        self.assertAlmostEqual(sum(x.Length() for x in lines.values()), sum(x.Length() for x in known), delta=1e-9)
+        layer = opened(terrain("coast"), "INTERVAL=50").GetLayer(1)
+        self.assertTrue(all(f["elev"] == f.GetGeometryRef().GetZ(0) for f in layer))
+        layer.SetAttributeFilter("elev = 100")
+        self.assertEqual({f["elev"] for f in layer}, {100.0})
+        self.assertEqual(opened(terrain("coast")).GetLayerCount(), 1)
+
+    def test_ogrinfo_shows_both(self):
+        told = run("ogrinfo", "-so", "-al", terrain("mountains"), "-oo", "INTERVAL=100", "-oo", "ERROR=5", "-spat", "378000", "3802000", "380000",
+                   "3804000")
+        self.assertRegex(told, r"triangles\nGeometry: 3D Polygon\nFeature Count: [1-9][0-9]{2,}")
+        self.assertRegex(told, r"isolines\nGeometry: 3D Line String\nFeature Count: [1-9]")
+
+
+class Refusals(Case):
+    def test_writing_is_refused_without_a_word(self):
+        for flags in gdal.OF_RASTER, gdal.OF_VECTOR, gdal.OF_RASTER | gdal.OF_VECTOR:
+            self.assertEqual(failure(lambda f=flags: gdal.OpenEx(terrain("coast"), f | gdal.OF_UPDATE)), (None, ""))
+        self.assertIn("PTIN", run("ogrinfo", terrain("coast")))  # which tries it first
+
+    def test_options_that_mean_nothing_are_refused(self):
+        for option in "ERROR=-1", "ERROR=x", "PIXEL_SIZE=0", "PIXEL_SIZE=100000", "PIXEL_SIZE=1e-9", "INTERVAL=0", "MEMORY_MB=0", "BAND=x":
+            data, message = failure(lambda o=option: opened(terrain("mountains"), o))
+            self.assertIsNone(data)
+            self.assertRegex(message, "^ptin: " + option.split("=")[0] + ": [^\n]*$")
+
+    def test_the_program_builds_from_no_terrain(self):
+        told = run(PROGRAM, "build", terrain("coast"), "-o", "again.ptin", status=2)
+        self.assertIn("not recognized", told)
+        self.assertFalse(os.path.exists(scratch("again.ptin")))
+
+    def test_cut_and_flipped_files_are_one_error(self):
+        with open(terrain("mountains"), "rb") as file:
+            whole = file.read()
+        exact = heights(terrain("mountains"))
+        bad = scratch("bad.ptin")
+
+        def read():
+            data = opened(bad)
+            if data is None:
+                return None
+            layer = data.GetLayer(0)
+            return data.ReadAsArray(), layer.GetFeatureCount()
+
+        def written(content):
+            with open(bad, "wb") as file:
+                file.write(content)
+            return failure(read)
+
+        for size in 8, 100, 4096, 5000, len(whole) // 2, len(whole) - 1:
+            answer, message = written(whole[:size])
+            self.assertIsNone(answer)
+            self.assertRegex(message, "^ptin: [^\n]*bad.ptin[^\n]*$")
+        for i in range(24):
+            place = (len(whole) - 1) * i // 23
+            answer, message = written(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1:])
+            if place < 8:  # GDAL leaves it to its caller to say that nothing reads it
+                self.assertEqual((answer, message), (None, ""))
+            elif message:
+                self.assertRegex(message, "^ptin: [^\n]*bad.ptin[^\n]*$")
+                self.assertTrue(answer is None or answer[0] is None or answer[1] == 0)
+            else:  # what nobody asked for
+                self.assertTrue((answer[0] == exact).all())
+
+    def test_a_file_that_is_cut_while_it_is_open_is_an_error(self):
+        path = shutil.copy(terrain("mountains"), scratch("open.ptin"))
+        data = opened(path)
+        os.truncate(path, 20000)
+        array, message = failure(data.ReadAsArray)
+        self.assertIsNone(array)
+        self.assertRegex(message, "^ptin: ")
+
+    def test_a_file_that_is_replaced_goes_on_answering(self):
+        path = shutil.copy(terrain("mountains"), scratch("replaced.ptin"))
+        data = opened(path)
+        os.rename(shutil.copy(terrain("coast"), scratch("other.ptin")), path)
+        self.assertTrue((data.ReadAsArray() == heights(terrain("mountains"))).all())
+
+    def test_what_does_not_fit_the_memory_is_refused(self):
+        self.assertIsNone(failure(lambda: heights(terrain("mountains"), "MEMORY_MB=1", buf_xsize=3000, buf_ysize=3000))[0])
+        layer = opened(terrain("mountains"), "MEMORY_MB=1", "ERROR=0").GetLayer(0)
+        feature, message = failure(layer.GetNextFeature)
+        self.assertIsNone(feature)
+        self.assertIn("MEMORY_MB", message)
+
+    def test_a_progress_that_says_stop_stops(self):
+        asked = []
+
+        def stop(share, *_):
+            asked.append(share)
+            return 0
+
+        band = opened(terrain("mountains")).GetRasterBand(1)
+        array, message = failure(lambda: band.ReadAsArray(buf_xsize=200, buf_ysize=200, callback=stop))
+        self.assertIsNone(array)
+        self.assertTrue(asked)
+        self.assertEqual(gdal.GetLastErrorNo(), gdal.CPLE_UserInterrupt)
+
+
+class Programs(Case):
+    def test_gdal_translate_takes_a_small_picture(self):
+        run("gdal_translate", "-q", "-outsize", "100", "90", terrain("mountains"), "small.tif")
+        columns, rows, low, high = statistics(scratch("small.tif"))
+        self.assertEqual((columns, rows), (100, 90))
+        self.assertTrue(633 <= low < 700 and 1500 < high <= 1576)
+
+    def test_gdalwarp_gives_the_same_with_two_threads(self):
+        for name, threads in ("one.tif", []), ("two.tif", ["-multi", "-wo", "NUM_THREADS=2"]):
+            run("gdalwarp", "-q", "-overwrite", *threads, "-t_srs", "EPSG:4326", "-ts", "60", "0", terrain("mountains"), name)
+        with open(scratch("one.tif"), "rb") as one, open(scratch("two.tif"), "rb") as two:
+            self.assertEqual(one.read(), two.read())
+        columns, _, low, high = statistics(scratch("one.tif"))
+        self.assertTrue(columns == 60 and 633 <= low < 720 and 1480 < high <= 1576, (columns, low, high))
+
+    def test_gdaldem_and_gdal_contour_give_what_they_give_for_the_source(self):
+        for given, name in (terrain("mountains"), "ours"), (source("mountains"), "theirs"):
+            run("gdaldem", "hillshade", "-q", given, name + ".tif")
+            run("gdal_contour", "-q", "-i", "100", "-a", "elev", given, name + ".geojson")
+        for end in ".tif", ".geojson":
+            with open(scratch("ours" + end), "rb") as ours, open(scratch("theirs" + end), "rb") as theirs:
+                self.assertEqual(ours.read().replace(b"ours", b""), theirs.read().replace(b"theirs", b""), end)
+
+    def test_gdallocationinfo_finds_a_sample(self):
+        told = run("gdallocationinfo", "-valonly", terrain("mountains"), "130", "40")
+        self.assertEqual(float(told), heights(terrain("mountains"))[40, 130])
+
+    def test_files_elsewhere_are_read(self):
+        server = subprocess.Popen([sys.executable, RANGE_SERVER, os.path.dirname(terrain("coast"))], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        try:
+            at = f"http://127.0.0.1:{int(server.stdout.readline())}"
+            for name in at + "/plain/coast.ptin", "/vsicurl/" + at + "/plain/coast.ptin":
+                self.assertTrue((heights(name) == heights(terrain("coast"))).all())
+            data, message = failure(lambda: opened(at + "/missing/coast.ptin"))
+            self.assertIsNone(data)
+            self.assertIn("404", message)
+        finally:
+            server.communicate()
+        with open(terrain("coast"), "rb") as file:
+            gdal.FileFromMemBuffer("/vsimem/coast.ptin", file.read())
+        self.assertTrue((heights("/vsimem/coast.ptin") == heights(terrain("coast"))).all())
+
+    def test_rasterio_reads_windows(self):
+        try:
+            import rasterio
+        except ImportError:
+            self.skipTest("rasterio is not installed")
+        with rasterio.open(terrain("mountains")) as data:
+            self.assertTrue((data.read(1, window=((10, 40), (20, 60))) == heights(terrain("mountains"))[10:40, 20:60]).all())
+            self.assertEqual(data.read(1, out_shape=(50, 50)).shape, (50, 50))
+            self.assertEqual(data.crs.to_epsg(), 32611)
+            self.assertEqual(next(data.sample([data.xy(7, 9)]))[0], heights(terrain("mountains"))[7, 9])
+
+    def test_mapserver_draws_both(self):
+        if shutil.which("map2img") is None:
+            self.skipTest("MapServer is not installed")
+        with open(scratch("both.map"), "w", encoding="utf-8") as file:
+            file.write(f"""MAP
+              EXTENT 376314 3800208 384023 3807917  SIZE 100 100  IMAGETYPE png
+              LAYER TYPE RASTER STATUS DEFAULT DATA "{terrain("mountains")}" PROCESSING "SCALE=600,1600" END
+              LAYER TYPE LINE STATUS DEFAULT CONNECTIONTYPE OGR CONNECTION "{terrain("mountains")}" DATA "triangles"
+                CLASS STYLE COLOR 255 0 0 END END
+              END
+            END""")
+        run("map2img", "-m", "both.map", "-o", "both.png")
+        colours = gdal.Open(scratch("both.png")).ReadAsArray()
+        self.assertEqual(colours.shape[-2:], (100, 100))
+        self.assertGreater(colours[0].max(), colours[1].min())
+
+
+if __name__ == "__main__":
+    shutil.rmtree(SCRATCH, ignore_errors=True)
+    os.makedirs(SCRATCH)
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
