@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tests of the Python module.
 
-usage: module_test.py PACKAGE PROGRAM ROOT [unittest's arguments]
-PACKAGE is the folder that holds the built package ptin, PROGRAM the program ptin, ROOT the tree. Exit status 77, with a
-sentence, where what the module needs is not installed."""
+usage: module_test.py BUILD ROOT [unittest's arguments]
+BUILD is the folder of the build, which holds the program and the package, ROOT the tree. Exit status 77, with a sentence,
+where what the module needs is not installed."""
 
 import doctest
+import glob
 import importlib
 import json
 import os
 import pickle
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,10 +21,11 @@ import tempfile
 import threading
 import unittest
 
-if len(sys.argv) < 4:
+if len(sys.argv) < 3:
     sys.exit(__doc__)
-PACKAGE, PROGRAM, ROOT = (os.path.abspath(path) for path in sys.argv[1:4])
-sys.path.insert(0, PACKAGE)
+BUILD, ROOT = (os.path.abspath(path) for path in sys.argv[1:3])
+PROGRAM = os.path.join(BUILD, "bin/ptin")
+sys.path.insert(0, os.path.join(BUILD, "python"))
 try:
     import numpy as np
     import ptin
@@ -478,6 +481,20 @@ class Process(OnTerrain):
         self.assertLess(resident() - before, 8 << 20)
 
 
+class Install(unittest.TestCase):
+    def test_the_component_is_a_package(self):
+        subprocess.run(
+            ["cmake", "--install", BUILD, "--component", "python", "--prefix", "installed"], check=True, stdout=subprocess.DEVNULL
+        )
+        (package,) = glob.glob("installed/lib/python3*/*-packages")
+        self.assertTrue(os.path.exists(f"{package}/ptin/py.typed"))
+        asked = "import ptin; print(ptin.__file__, ptin.__version__, ptin.open('dem.ptin').samples)"
+        environment = {**os.environ, "PYTHONPATH": package}
+        done = subprocess.run([sys.executable, "-c", asked], env=environment, check=True, capture_output=True, text=True)
+        self.assertEqual(done.stdout.split()[1:], [ptin.__version__, "66049"])
+        self.assertIn("installed", done.stdout)
+
+
 class Build(unittest.TestCase):
     def test_progress_is_told(self):
         calls = []
@@ -575,7 +592,8 @@ class Documents(unittest.TestCase):
         self.assertEqual(failed, 0)
 
     def test_the_page(self):
-        """Every block of the page runs, in its order. Where Matplotlib is not installed nothing is drawn."""
+        """Every block of the page runs, in its order. Where Matplotlib is not installed nothing is drawn; PTIN_PICTURES
+        names a folder for what is."""
         from unittest import mock
 
         try:
@@ -596,12 +614,15 @@ class Documents(unittest.TestCase):
             blocks = page.read().split("```python\n")[1:]
         with open("wells.csv", "w") as wells:
             wells.write("x,y,name\n378000,3804000,a\n380000,3805000,b\n0,0,c\n")
+        os.symlink(os.path.join(ROOT, "tests"), "tests")
         with mock.patch.dict(sys.modules, absent):
             names = {}
             for block in blocks:
                 exec(compile(block.split("```")[0], "README.md", "exec"), names)
         self.assertGreater(len(blocks), 5)
+        for picture in glob.glob("*.png") if "PTIN_PICTURES" in os.environ else ():
+            shutil.copy(picture, os.environ["PTIN_PICTURES"])
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -113,8 +113,7 @@ std::string vrt_of(const GridArray& grid, const std::string& file) {
          "\" band=\"1\" subClass=\"VRTRawRasterBand\"><SourceFilename relativeToVRT=\"1\">" + file +
          "</SourceFilename><ImageOffset>0</ImageOffset><PixelOffset>" +
          std::to_string(grid.bytes_of_number) + "</PixelOffset><LineOffset>" + line +
-         "</LineOffset><ByteOrder>" +
-         (std::endian::native == std::endian::little ? "LSB" : "MSB") +
+         "</LineOffset><ByteOrder>" + (std::endian::native == std::endian::little ? "LSB" : "MSB") +
          "</ByteOrder></VRTRasterBand></VRTDataset>";
 }
 

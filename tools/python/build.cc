@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Building a terrain from files or arrays.
+#include "engine/construct/build.h"
+
 #include <array>
 #include <chrono>
 #include <memory>
@@ -11,7 +13,6 @@
 
 #include <malloc.h>
 
-#include "engine/construct/build.h"
 #include "engine/construct/build_option_table.h"
 #include "engine/error.h"
 #include "tools/python/array_source.h"
@@ -125,8 +126,7 @@ py::list list_of_options() {
             return "list of int";
           if constexpr (std::is_same_v<Field, std::vector<std::string> BuildOptions::*>)
             return "list of str";
-          if constexpr (std::is_same_v<Field,
-                                       std::optional<std::array<double, 4>> BuildOptions::*>)
+          if constexpr (std::is_same_v<Field, std::optional<std::array<double, 4>> BuildOptions::*>)
             return "four floats";
           return "str";
         },
@@ -138,10 +138,10 @@ py::list list_of_options() {
 
 std::unique_ptr<ArraySource> source_of_grid(const py::array& grid, const std::string& type,
                                             const std::array<double, 6>& geotransform) {
-  return std::make_unique<ArraySource>(GridArray{
-      grid.data(), type, static_cast<std::size_t>(grid.itemsize()),
-      static_cast<std::size_t>(grid.shape(1)), static_cast<std::size_t>(grid.shape(0)),
-      geotransform});
+  return std::make_unique<ArraySource>(
+      GridArray{grid.data(), type, static_cast<std::size_t>(grid.itemsize()),
+                static_cast<std::size_t>(grid.shape(1)), static_cast<std::size_t>(grid.shape(0)),
+                geotransform});
 }
 
 std::unique_ptr<ArraySource> source_of_points(const Numbers& points) {
@@ -178,8 +178,7 @@ py::dict report_of(const BuildReport& r) {
   d["resumed"] = r.resumed;
   py::list warnings;
   for (const SourceWarning& warning : r.warnings.all()) {
-    warnings.append(warning.file.empty() ? warning.message
-                                         : warning.file + ": " + warning.message);
+    warnings.append(warning.file.empty() ? warning.message : warning.file + ": " + warning.message);
   }
   d["warnings"] = warnings;
   return d;
@@ -199,20 +198,22 @@ py::dict build_terrain(const std::vector<std::string>& inputs, const std::string
   resources.stop = stop.get_token();
   std::optional<PythonObserver> observer;
   if (progress) resources.observer = &observer.emplace(*progress, stop);
+  BuildReport report;
   try {
-    return report_of(run_interruptibly(
-        stop, [&] { return build(inputs, output, build_options, resources); }));
+    report =
+        run_interruptibly(stop, [&] { return build(inputs, output, build_options, resources); });
   } catch (const Error&) {
     if (observer) observer->raise_again();
     throw;
   }
+  if (observer) observer->raise_again();
+  return report_of(report);
 }
 
 }  // namespace
 
 void add_build(py::module_& module) {
-  py::class_<ArraySource>(module, "ArraySource")
-      .def_property_readonly("name", &ArraySource::name);
+  py::class_<ArraySource>(module, "ArraySource").def_property_readonly("name", &ArraySource::name);
   // The memory of an array is borrowed, so the array lives as long.
   module.def("source_of_grid", source_of_grid, py::keep_alive<0, 1>());
   module.def("source_of_points", source_of_points, py::keep_alive<0, 1>());

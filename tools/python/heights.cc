@@ -141,8 +141,8 @@ py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
                           static_cast<int>(*places.state), found.certified_error,
                           found.certified_deviation, found.exact);
   }
-  return py::make_tuple(arrays.height, arrays.low, arrays.high, arrays.state,
-                        found.certified_error, found.certified_deviation, found.exact);
+  return py::make_tuple(arrays.height, arrays.low, arrays.high, arrays.state, found.certified_error,
+                        found.certified_deviation, found.exact);
 }
 
 py::tuple profile(const OpenTerrain& t, const Numbers& line, std::optional<double> stations,
@@ -190,8 +190,7 @@ py::tuple highest(const OpenTerrain& t, const RegionArgument& region, bool lowes
   request.region = region_of(region);
   request.lowest = lowest;
   request.listed = listed;
-  const HighestResult found =
-      run_interruptibly(stop, [&] { return t.terrain.highest(request); });
+  const HighestResult found = run_interruptibly(stop, [&] { return t.terrain.highest(request); });
   std::vector<double> vertices;
   for (const HeightAt& at : found.vertices) {
     vertices.insert(vertices.end(), {at.position.x, at.position.y, at.height});

@@ -44,8 +44,7 @@ py::tuple isolines(const OpenTerrain& t, const std::vector<double>& levels,
   std::stop_source stop;
   IsolineRequest request;
   asked.put(request, stop.get_token());
-  request.levels =
-      interval ? levels_every(*interval, base, t.terrain.store().facts()) : levels;
+  request.levels = interval ? levels_every(*interval, base, t.terrain.store().facts()) : levels;
   request.region = region_of(region);
   request.temporary_folder = std::filesystem::temp_directory_path().string();
   std::optional<LineArrays> arrays;

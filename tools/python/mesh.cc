@@ -102,9 +102,8 @@ class PartIterator {
     request_.region = region_of(region);
     // What a patch takes beside its part, and two parts as arrays: in work, and in the loop.
     request_.limits.memory_bytes /= 4;
-    parts_ = run_interruptibly(stop_, [this] {
-      return std::make_unique<TinParts>(terrain_->terrain, request_);
-    });
+    parts_ = run_interruptibly(
+        stop_, [this] { return std::make_unique<TinParts>(terrain_->terrain, request_); });
     certified_ = parts_->detail().certificate();
     is_exact_ = parts_->detail().is_exact(terrain_->terrain.store().facts());
     walker_ = std::jthread([this] { walk(); });

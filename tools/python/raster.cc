@@ -48,8 +48,7 @@ RasterRequest pixels_that_fill(const Window& window, const Counts& size,
 }
 
 RasterRequest pixels_of(const OpenTerrain& t, const std::optional<std::array<double, 4>>& window,
-                        const std::optional<Counts>& size,
-                        const std::optional<Pair>& pixel_size) {
+                        const std::optional<Counts>& size, const std::optional<Pair>& pixel_size) {
   const std::optional<MapPoint> own = tools::own_pixel_of(t.terrain.store());
   if (size && pixel_size) refuse("a raster has a size or a pixel_size; leave one out");
   if (size) return pixels_that_fill(covered(t, window, own), *size, own);
@@ -77,8 +76,7 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
     refuse("the raster would have more than 2^31 - 1 columns or rows", "size");
   }
   py::array_t<double> heights({pixels.height, pixels.width});
-  const std::span<double> places(heights.mutable_data(),
-                                 static_cast<std::size_t>(pixels.pixels()));
+  const std::span<double> places(heights.mutable_data(), static_cast<std::size_t>(pixels.pixels()));
   const RasterResult found =
       run_interruptibly(stop, [&] { return t.terrain.raster(request, places); });
   const std::array<double, 6> g = tools::geotransform_of(request);

@@ -37,8 +37,8 @@ py::object tuple_of(const std::optional<SightPoint>& point) {
 }
 
 py::tuple sight(const OpenTerrain& t, const End& a, const End& b, bool absolute, bool verdict_only,
-                double curvature, std::optional<double> hertz,
-                std::optional<std::uint64_t> budget, const Asked& asked) {
+                double curvature, std::optional<double> hertz, std::optional<std::uint64_t> budget,
+                const Asked& asked) {
   std::stop_source stop;
   SightRequest request;
   asked.put(request, stop.get_token());
@@ -51,21 +51,18 @@ py::tuple sight(const OpenTerrain& t, const End& a, const End& b, bool absolute,
   if (hertz) request.wavelength = kSpeedOfLight / *hertz / ground.metres_per_height;
   const SightPair pair{{a[0], a[1]}, a[2], {b[0], b[1]}, b[2]};
   const SightResult r = run_interruptibly(stop, [&] { return t.terrain.sight(pair, request); });
-  return py::make_tuple(name_of_verdict(r.verdict),
-                        py::make_tuple(name_of(r.state_a), name_of(r.state_b)), r.length,
-                        tuple_of(r.obstruction), tuple_of(r.clearance_at), r.clearance_min,
-                        r.clearance_max, r.void_length,
-                        r.fresnel_ratio ? py::cast(*r.fresnel_ratio) : py::none(),
-                        tuple_of(r.fresnel_ratio ? r.fresnel_at : std::nullopt),
-                        r.certified_deviation, r.exact);
+  return py::make_tuple(
+      name_of_verdict(r.verdict), py::make_tuple(name_of(r.state_a), name_of(r.state_b)), r.length,
+      tuple_of(r.obstruction), tuple_of(r.clearance_at), r.clearance_min, r.clearance_max,
+      r.void_length, r.fresnel_ratio ? py::cast(*r.fresnel_ratio) : py::none(),
+      tuple_of(r.fresnel_ratio ? r.fresnel_at : std::nullopt), r.certified_deviation, r.exact);
 }
 
 py::array_t<std::uint8_t> pixels_of(Viewshed& seen) {
   static_assert(sizeof(Sight) == 1);
   auto kept = std::make_unique<std::vector<Sight>>(std::move(seen.pixels));
   auto* const first = reinterpret_cast<std::uint8_t*>(kept->data());
-  const py::capsule owner(kept.get(),
-                          [](void* p) { delete static_cast<std::vector<Sight>*>(p); });
+  const py::capsule owner(kept.get(), [](void* p) { delete static_cast<std::vector<Sight>*>(p); });
   kept.release();
   return py::array_t<std::uint8_t>({seen.height, seen.width}, first, owner);
 }
@@ -89,9 +86,8 @@ py::tuple viewshed(const OpenTerrain& t, const End& eye, double radius, double t
   request.pixel_size = pixel_size;
   request.list_vertices = false;
   Viewshed seen = run_interruptibly(stop, [&] { return t.terrain.viewshed(request); });
-  const py::tuple transform =
-      py::make_tuple(seen.step_x, 0.0, seen.first.x - seen.step_x / 2, 0.0, -seen.step_y,
-                     seen.first.y + seen.step_y / 2);
+  const py::tuple transform = py::make_tuple(seen.step_x, 0.0, seen.first.x - seen.step_x / 2, 0.0,
+                                             -seen.step_y, seen.first.y + seen.step_y / 2);
   return py::make_tuple(pixels_of(seen), transform, seen.eye_height, seen.visible_pixels,
                         seen.hidden_pixels, seen.undecided_pixels, certificate_of(seen));
 }

@@ -48,9 +48,8 @@ py::tuple tuple_of(const VolumeResult& r) {
                         r.certificate.error, r.certificate.deviation, r.exact);
 }
 
-py::list volumes(const OpenTerrain& t, const std::vector<double>& levels,
-                 const OpenTerrain* other, const RegionArgument& region, int threads,
-                 const Asked& asked) {
+py::list volumes(const OpenTerrain& t, const std::vector<double>& levels, const OpenTerrain* other,
+                 const RegionArgument& region, int threads, const Asked& asked) {
   std::stop_source stop;
   VolumeRequest request;
   asked.put(request, stop.get_token());
