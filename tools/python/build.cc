@@ -3,6 +3,7 @@
 // Building a terrain from files or arrays.
 #include "engine/construct/build.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <memory>

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 import re
-from typing import Any, Iterable, Iterator, Optional, Sequence, Union
+from typing import Any, Iterable, Iterator, Optional, Sequence, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -497,6 +497,12 @@ class Terrain:
         )
         array, transform, eye_height, visible, hidden, undecided, certificate = answer
         return Viewshed(*certificate, array, Transform(*transform), self.crs, eye_height, visible, hidden, undecided)
+
+    @overload
+    def volume(self, level: float = 0.0, *more: Any, **asked: Any) -> Volume: ...
+
+    @overload
+    def volume(self, level: Sequence[float], *more: Any, **asked: Any) -> list[Volume]: ...
 
     def volume(
         self,
