@@ -374,6 +374,41 @@ class Errors(OnTerrain):
             t.locate((0, 0))
 
 
+class Elsewhere(OnTerrain):
+    """Files that a server has."""
+
+    def setUp(self):
+        super().setUp()
+        self.server = subprocess.Popen(
+            [sys.executable, os.path.join(ROOT, "tests/support/range_server.py"), "."],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self.host = f"http://127.0.0.1:{int(self.server.stdout.readline())}"
+
+    def tearDown(self):
+        self.server.communicate()
+
+    def test_a_url_is_asked_as_a_file(self):
+        xy = positions(self.t, 30)
+        with ptin.open(f"{self.host}/plain/dem.ptin") as there:
+            np.testing.assert_array_equal(there.locate(xy, error=5).z, self.t.locate(xy, error=5).z)
+            again = pickle.loads(pickle.dumps(there))
+            self.assertEqual(again.locate(xy[0]).z, self.t.locate(xy[0]).z)
+        with self.assertRaises(ptin.NotFound):
+            ptin.open(f"{self.host}/missing/dem.ptin")
+
+    def test_ctrl_c_ends_waiting_for_a_server(self):
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            ptin.open(f"{self.host}/silent/dem.ptin").refine()
+        there = ptin.open(f"{self.host}/plain/dem.ptin")
+        there._opened.stop_waiting()  # as a signal does, for good; what is asked next opens it anew
+        self.assertEqual(there.locate((380000, 3804000)).z, self.t.locate((380000, 3804000)).z)
+
+
 class Process(OnTerrain):
     """What the module does to the process: threads, signals, memory."""
 

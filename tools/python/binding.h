@@ -20,6 +20,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
+#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -30,7 +31,22 @@ struct OpenTerrain {
   Terrain terrain;
   CrsFacts crs;
   bool is_remote = false;
+  /// Ends waiting for the server, for all questions and for good: what is asked next opens the terrain
+  /// anew.
+  mutable std::stop_source waiting{};
+
+  /// What a stop of a question of this terrain calls.
+  void stop_waiting() const noexcept {
+    if (is_remote) waiting.request_stop();
+  }
 };
+
+/// Runs a question of a terrain as run_interruptibly() does; a signal also ends waiting for its server.
+template <typename Work>
+auto answer(const OpenTerrain& t, std::stop_source& stop, const Work& work) {
+  const std::stop_callback on_stop(stop.get_token(), [&t] { t.stop_waiting(); });
+  return run_interruptibly(stop, work);
+}
 
 /// Positions: an (N, 2) array of float64 is a span of MapPoint, so it is not copied.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -86,6 +102,9 @@ template <typename Result>
 
 /// "surface", "void", "outside", as in JSON.
 [[nodiscard]] const char* name_of(PointState state) noexcept;
+
+/// A sentence with options as arguments of Python: "--max-edge" is max_edge.
+[[nodiscard]] std::string without_dashes(const std::string& sentence);
 
 // Each adds its functions and classes to the module.
 void add_errors(py::module_& module);

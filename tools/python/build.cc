@@ -18,7 +18,6 @@
 #include "engine/error.h"
 #include "tools/python/array_source.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -132,7 +131,7 @@ py::list list_of_options() {
           return "str";
         },
         option.field);
-    all.append(py::make_tuple(key_of(option), type, option.help));
+    all.append(py::make_tuple(key_of(option), type, without_dashes(option.help)));
   }
   return all;
 }

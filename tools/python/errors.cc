@@ -10,7 +10,15 @@ namespace ptin::python {
 
 namespace {
 
-/// A sentence with options as arguments of Python: "--max-edge" is max_edge.
+void raise(const Error& error) {
+  const py::object make = py::module_::import("ptin.errors").attr("_error_of");
+  const py::object raised = make(std::string(to_string(error.code())),
+                                 without_dashes(error.message()), without_dashes(error.context()));
+  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised.ptr())), raised.ptr());
+}
+
+}  // namespace
+
 std::string without_dashes(const std::string& sentence) {
   const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
   std::string told;
@@ -28,15 +36,6 @@ std::string without_dashes(const std::string& sentence) {
   }
   return told;
 }
-
-void raise(const Error& error) {
-  const py::object make = py::module_::import("ptin.errors").attr("_error_of");
-  const py::object raised = make(std::string(to_string(error.code())),
-                                 without_dashes(error.message()), without_dashes(error.context()));
-  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised.ptr())), raised.ptr());
-}
-
-}  // namespace
 
 void add_errors(py::module_& /*module*/) {
   py::register_exception_translator([](std::exception_ptr thrown) {

@@ -10,7 +10,6 @@
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -134,7 +133,7 @@ py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
     const py::gil_scoped_release release;
     found = work();
   } else {
-    found = run_interruptibly(stop, work);
+    found = answer(t, stop, work);
   }
   if (is_scalar) {
     return py::make_tuple(*places.height, *places.low, *places.high,
@@ -161,7 +160,7 @@ py::tuple profile(const OpenTerrain& t, const Numbers& line, std::optional<doubl
   std::vector<double> distance, xy, height;
   std::vector<std::uint8_t> state;
   std::vector<std::uint8_t> is_station;
-  const ProfileResult found = run_interruptibly(stop, [&] {
+  const ProfileResult found = answer(t, stop, [&] {
     ProfileResult walked = t.terrain.profile(points, request);
     for (const ProfilePoint& p : walked.points) {
       distance.push_back(p.distance);
@@ -190,7 +189,7 @@ py::tuple highest(const OpenTerrain& t, const RegionArgument& region, bool lowes
   request.region = region_of(region);
   request.lowest = lowest;
   request.listed = listed;
-  const HighestResult found = run_interruptibly(stop, [&] { return t.terrain.highest(request); });
+  const HighestResult found = answer(t, stop, [&] { return t.terrain.highest(request); });
   std::vector<double> vertices;
   for (const HeightAt& at : found.vertices) {
     vertices.insert(vertices.end(), {at.position.x, at.position.y, at.height});

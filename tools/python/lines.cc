@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -48,7 +47,7 @@ py::tuple isolines(const OpenTerrain& t, const std::vector<double>& levels,
   request.region = region_of(region);
   request.temporary_folder = std::filesystem::temp_directory_path().string();
   std::optional<LineArrays> arrays;
-  const py::tuple certificate = certificate_of(run_interruptibly(stop, [&] {
+  const py::tuple certificate = certificate_of(answer(t, stop, [&] {
     const Isolines lines = t.terrain.isolines(request);
     arrays.emplace(lines);
     struct Certified {

@@ -9,7 +9,6 @@
 #include "engine/error.h"
 #include "tools/export/tin_patch.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -62,7 +61,7 @@ py::tuple refine(const OpenTerrain& t, const RegionArgument& region, bool clip,
   request.triangles = triangles;
   request.form = clip ? ResultForm::kMeetingRegion : ResultForm::kWholeDomain;
   MeshArrays mesh;
-  const RefinedTin found = run_interruptibly(stop, [&] {
+  const RefinedTin found = answer(t, stop, [&] {
     RefinedTin refined = t.terrain.refine(request);
     mesh = surface_of(refined.tin, t.terrain.store().facts());
     refined.tin = {};
@@ -102,8 +101,8 @@ class PartIterator {
     request_.region = region_of(region);
     // What a patch takes beside its part, and two parts as arrays: in work, and in the loop.
     request_.limits.memory_bytes /= 4;
-    parts_ = run_interruptibly(
-        stop_, [this] { return std::make_unique<TinParts>(terrain_->terrain, request_); });
+    parts_ = answer(*terrain_, stop_,
+                    [this] { return std::make_unique<TinParts>(terrain_->terrain, request_); });
     certified_ = parts_->detail().certificate();
     is_exact_ = parts_->detail().is_exact(terrain_->terrain.store().facts());
     walker_ = std::jthread([this] { walk(); });
@@ -117,6 +116,7 @@ class PartIterator {
 
   /// None after the last part.
   py::object next() {
+    const std::stop_callback on_stop(stop_.get_token(), [this] { terrain_->stop_waiting(); });
     std::unique_lock lock(mutex_);
     if (wait_for_signals_too(lock, changed_, stop_, [this] { return is_ready_ || is_done_; })) {
       raise_what_is_set();

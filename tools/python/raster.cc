@@ -8,7 +8,6 @@
 #include "tools/export/pixel_grid.h"
 #include "tools/facts/source_count.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -77,8 +76,7 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
   }
   py::array_t<double> heights({pixels.height, pixels.width});
   const std::span<double> places(heights.mutable_data(), static_cast<std::size_t>(pixels.pixels()));
-  const RasterResult found =
-      run_interruptibly(stop, [&] { return t.terrain.raster(request, places); });
+  const RasterResult found = answer(t, stop, [&] { return t.terrain.raster(request, places); });
   const std::array<double, 6> g = tools::geotransform_of(request);
   return py::make_tuple(heights, py::make_tuple(g[1], g[2], g[0], g[4], g[5], g[3]),
                         certificate_of(found));

@@ -6,7 +6,6 @@
 
 #include "engine/crs/ground.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -50,7 +49,7 @@ py::tuple sight(const OpenTerrain& t, const End& a, const End& b, bool absolute,
   request.ground_distance = ground.distance;
   if (hertz) request.wavelength = kSpeedOfLight / *hertz / ground.metres_per_height;
   const SightPair pair{{a[0], a[1]}, a[2], {b[0], b[1]}, b[2]};
-  const SightResult r = run_interruptibly(stop, [&] { return t.terrain.sight(pair, request); });
+  const SightResult r = answer(t, stop, [&] { return t.terrain.sight(pair, request); });
   return py::make_tuple(
       name_of_verdict(r.verdict), py::make_tuple(name_of(r.state_a), name_of(r.state_b)), r.length,
       tuple_of(r.obstruction), tuple_of(r.clearance_at), r.clearance_min, r.clearance_max,
@@ -85,7 +84,7 @@ py::tuple viewshed(const OpenTerrain& t, const End& eye, double radius, double t
   request.curvature = {curvature, ground.earth_diameter};
   request.pixel_size = pixel_size;
   request.list_vertices = false;
-  Viewshed seen = run_interruptibly(stop, [&] { return t.terrain.viewshed(request); });
+  Viewshed seen = answer(t, stop, [&] { return t.terrain.viewshed(request); });
   const py::tuple transform = py::make_tuple(seen.step_x, 0.0, seen.first.x - seen.step_x / 2, 0.0,
                                              -seen.step_y, seen.first.y + seen.step_y / 2);
   return py::make_tuple(pixels_of(seen), transform, seen.eye_height, seen.visible_pixels,

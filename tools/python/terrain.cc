@@ -8,7 +8,6 @@
 #include "engine/remote/remote_file.h"
 #include "tools/facts/source_count.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -17,17 +16,17 @@ namespace {
 /// Opens a file or an object elsewhere. Pages are read and not mapped: a file that is cut short is
 /// an error then and no signal, which a library may not take.
 std::shared_ptr<OpenTerrain> open(const std::string& name) {
-  std::stop_source stop;
-  return run_interruptibly(stop, [&] {
+  std::stop_source waiting;
+  return run_interruptibly(waiting, [&] {
     const bool is_elsewhere = is_remote(name);
     RemoteOptions options;
-    options.stop = stop.get_token();
+    options.stop = waiting.get_token();
     Terrain terrain = is_elsewhere
                           ? Terrain(open_remote_store(name, options))
                           : Terrain::open(name, PageAccess::kPread, ReplacedFile::kAnswers);
     CrsFacts crs = crs_facts(terrain.store());
     return std::make_shared<OpenTerrain>(
-        OpenTerrain{std::move(terrain), std::move(crs), is_elsewhere});
+        OpenTerrain{std::move(terrain), std::move(crs), is_elsewhere, waiting});
   });
 }
 
@@ -78,6 +77,9 @@ py::dict units_of(const OpenTerrain& t) {
 
 void add_terrain(py::module_& module) {
   py::class_<OpenTerrain, std::shared_ptr<OpenTerrain>>(module, "Terrain")
+      .def_property_readonly("is_stopped",
+                             [](const OpenTerrain& t) { return t.waiting.stop_requested(); })
+      .def("stop_waiting", [](const OpenTerrain& t) { t.stop_waiting(); })
       .def_property_readonly("bounds", bounds_of)
       .def_property_readonly("pixel_size", pixel_size_of)
       .def_property_readonly("height_range", height_range_of)

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Volumes over a level, or between two terrains.
-#include <algorithm>
-#include <thread>
 #include <vector>
 
+#include "engine/construct/process_limits.h"
 #include "engine/crs/border_move.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/python/binding.h"
-#include "tools/python/interruptible.h"
 
 namespace ptin::python {
 
@@ -69,9 +67,11 @@ py::list volumes(const OpenTerrain& t, const std::vector<double>& levels, const 
   request.border_move = [ground_per_move](const StoreFile& store, double certified_error) {
     return ground_per_move * border_moved_at_most(store, certified_error);
   };
-  request.threads =
-      threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const std::vector<VolumeResult> found = run_interruptibly(stop, [&] {
+  request.threads = threads > 0 ? threads : allowed_threads();
+  const std::stop_callback on_stop(stop.get_token(), [other] {
+    if (other != nullptr) other->stop_waiting();
+  });
+  const std::vector<VolumeResult> found = answer(t, stop, [&] {
     return other != nullptr ? std::vector<VolumeResult>{t.terrain.volume(request)}
                             : t.terrain.volumes(request, levels);
   });

@@ -133,6 +133,8 @@ class Terrain:
     def _terrain(self) -> Any:
         if self._opened is None:
             raise ValueError("this terrain is closed")
+        if self._opened.is_stopped:  # by Ctrl-C, while it waited for a server
+            self._opened = _ptin.open(self._name)
         return self._opened
 
     def _asked(self, error: Optional[float], vertices: Optional[int], memory: Memory = None) -> Any:
@@ -520,7 +522,7 @@ class Terrain:
         Args:
             level: A height; of several the answer is a list of volumes, one each.
             against: Instead: a second terrain, on any grid, in the same CRS; cut is where this one is above it.
-            threads: At most; 0: as many as there are processors.
+            threads: At most; 0: as many as are allowed.
 
         >>> v = t.volume(level=1000)
         >>> v.net.volume == v.cut.volume - v.fill.volume, v.exact
