@@ -602,6 +602,17 @@ class Build(unittest.TestCase):
         points[:5, 2] = np.nan
         self.assertEqual(ptin.build(points, "array.ptin", overwrite=True).left_out_points, 5)
 
+    def test_equal_arrays_make_equal_files(self):
+        array, transform = source()
+        grid, points = array[:40, :40], np.argwhere(np.ones((9, 9)))[:, [0, 1, 1]]
+        for name, one, options in (("g", grid, {"transform": transform}), ("p", points, {})):
+            files = []
+            for path in (f"{name}1.ptin", f"{name}2.ptin"):
+                ptin.build(one, path, **options)
+                with open(path, "rb") as built:
+                    files.append(built.read())
+            self.assertEqual(*files)
+
     def test_options_are_those_of_the_program(self):
         report = ptin.build(RASTER, "options.ptin", max_error=5.0, cost="roi", bbox=(377000, 3801000, 380000, 3804000))
         self.assertLess(report.samples, 66049)
