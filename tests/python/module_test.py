@@ -1,0 +1,674 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tests of the Python module.
+
+usage: module_test.py BUILD ROOT [unittest's arguments]
+BUILD is the folder of the build, which holds the program and the package, ROOT the tree. Exit status 77, with a sentence,
+where what the module needs is not installed."""
+
+import doctest
+import glob
+import importlib
+import json
+import os
+import pickle
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+if len(sys.argv) < 3:
+    sys.exit(__doc__)
+BUILD, ROOT = (os.path.abspath(path) for path in sys.argv[1:3])
+PROGRAM = os.path.join(BUILD, "bin/ptin")
+sys.path.insert(0, os.path.join(BUILD, "python"))
+try:
+    import numpy as np
+    import ptin
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+RASTER = os.path.join(ROOT, "tests/data/mountains_257.tif")
+EYES = ((376904, 3804594, 2), (381569, 3802757, 2))
+folder = tempfile.TemporaryDirectory()
+
+
+def setUpModule():
+    os.chdir(folder.name)
+    ptin.build(RASTER, "dem.ptin", vertical_crs="EPSG:5773")
+
+
+def told(*arguments):
+    """What the program tells as JSON."""
+    done = subprocess.run([PROGRAM, *map(str, arguments), "--json"], check=True, capture_output=True, text=True)
+    return json.loads(done.stdout)
+
+
+def positions(terrain, count, seed=1):
+    xmin, ymin, xmax, ymax = terrain.bounds
+    return np.random.default_rng(seed).random((count, 2)) * [xmax - xmin, ymax - ymin] + [xmin, ymin]
+
+
+def source():
+    """The raster that the terrain is built from, as an array and its transform."""
+    array, transform, _ = ptin.open("dem.ptin").raster(error=None)
+    return array, transform
+
+
+class OnTerrain(unittest.TestCase):
+    def setUp(self):
+        self.t = ptin.open("dem.ptin")
+
+    def assert_array(self, array, shape, dtype):
+        self.assertIsInstance(array, np.ndarray)
+        self.assertEqual(array.shape, shape)
+        self.assertEqual(array.dtype, np.dtype(dtype))
+
+    def assert_certified(self, answer, error):
+        if error is None:
+            self.assertEqual((answer.certified_error, answer.certified_deviation, answer.exact), (0, 0, True))
+        else:
+            self.assertLessEqual(answer.certified_error, error)
+            self.assertGreaterEqual(answer.certified_deviation, answer.certified_error)
+            self.assertFalse(answer.exact)
+
+
+class Answers(OnTerrain):
+    """Shape, type and certificate of each answer."""
+
+    def test_locate_gives_arrays_of_points_and_numbers_of_one_point(self):
+        for error in (None, 5.0):
+            h = self.t.locate(positions(self.t, 50), error=error)
+            for array in (h.z, h.low, h.high):
+                self.assert_array(array, (50,), "f8")
+            self.assert_array(h.state, (50,), "u1")
+            self.assert_certified(h, error)
+            self.assertTrue(np.all((h.low <= h.z) & (h.z <= h.high)))
+            np.testing.assert_array_equal(np.asarray(h), h.z)
+        one = self.t.locate(positions(self.t, 1)[0])
+        self.assertIsInstance(one.z, float)
+        self.assertEqual(one.state, ptin.State.SURFACE)
+
+    def test_locate_takes_tuples_lists_arrays_and_integers(self):
+        z = self.t.locate((380000.0, 3804000.0)).z
+        for xy in ([380000, 3804000], np.array([380000, 3804000]), np.array([380000, 3804000], dtype="f4")):
+            self.assertEqual(self.t.locate(xy).z, z)
+        wide = np.zeros((3, 4))
+        wide[:, 1:3] = (380000, 3804000)
+        np.testing.assert_array_equal(self.t.locate(wide[:, 1:3]).z, [z, z, z])
+        self.assertEqual(self.t.locate(np.empty((0, 2))).z.shape, (0,))
+
+    def test_locate_finds_outside(self):
+        for count in (1, 2000):
+            h = self.t.locate(np.zeros((count, 2)))
+            self.assertTrue(np.all(np.isnan(h.z)) and np.all(h.state == ptin.State.OUTSIDE))
+
+    def test_locate_takes_positions_of_another_crs(self):
+        z = self.t.locate((380000.0, 3804000.0)).z
+        there = (-118.304, 34.37)
+        by_code, by_number = self.t.locate(there, crs="EPSG:4326"), self.t.locate([there], crs=4326)
+        self.assertEqual(by_code.z, by_number.z[0])
+        self.assertEqual(by_code.state, ptin.State.SURFACE)
+        self.assertEqual(self.t.locate((380000.0, 3804000.0), crs="EPSG:32611").z, z)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "no CRS"):
+            self.t.locate(there, crs="nonsense")
+
+    def test_profile(self):
+        xy = np.array(EYES)[:, :2]
+        for error in (None, 20.0):
+            p = self.t.profile(xy, error=error)
+            distance, places, z, state = p
+            self.assert_array(distance, (len(z),), "f8")
+            self.assert_array(places, (len(z), 2), "f8")
+            self.assert_array(z, distance.shape, "f8")
+            self.assert_array(state, distance.shape, "u1")
+            self.assert_array(p.station, distance.shape, "?")
+            self.assert_certified(p, error)
+            np.testing.assert_allclose(z, self.t.locate(places, error=error).z, atol=1e-4)
+        self.assertGreater(self.t.profile(xy, stations=500).station.sum(), 2)
+
+    def test_refine(self):
+        for error in (None, 20.0):
+            mesh = self.t.refine(error=error)
+            vertices, faces = mesh
+            self.assert_array(vertices, (len(vertices), 3), "f8")
+            self.assert_array(faces, (len(faces), 3), "i4")
+            self.assert_certified(mesh, error)
+            self.assertEqual((faces.min(), faces.max()), (0, len(vertices) - 1))
+            a, b, c = (vertices[faces[:, i], :2] for i in range(3))
+            twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+            self.assertTrue(np.all(twice > 0))
+            xmin, ymin, xmax, ymax = self.t.bounds
+            self.assertAlmostEqual(twice.sum() / 2, (xmax - xmin) * (ymax - ymin), delta=1)
+        self.assertEqual(len(self.t.refine(vertices=500).vertices), 500)
+        self.assertLessEqual(len(self.t.refine(triangles=500).faces), 500)
+
+    def test_regions_are_windows_and_polygons(self):
+        xmin, ymin, xmax, ymax = window = (378000, 3803000, 379000, 3804000)
+        corners = [(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax), (xmin, ymin)]
+        asked = len(self.t.refine(window, error=5, clip=True).faces)
+        geojson = {"type": "Polygon", "coordinates": [corners]}
+        for polygon in (corners, np.array(corners), [corners], geojson):
+            self.assertEqual(len(self.t.refine(polygon=polygon, error=5, clip=True).faces), asked)
+        hole = [(378300, 3803300), (378700, 3803300), (378700, 3803700)]
+        self.assertLess(len(self.t.refine(polygon=[corners, hole], error=5, clip=True).faces), asked)
+        with self.assertRaises(ptin.InvalidArgument):
+            self.t.refine(window, polygon=corners)
+
+    def test_parts_are_the_mesh(self):
+        whole = self.t.refine(error=5)
+
+        def triangles(mesh):
+            return {tuple(sorted(map(tuple, mesh.vertices[face]))) for face in mesh.faces}
+
+        parts = list(self.t.parts(error=5, memory="3M"))
+        self.assertGreater(len(parts), 3)
+        self.assertEqual(sum(len(part.faces) for part in parts), len(whole.faces))
+        self.assertEqual(set().union(*map(triangles, parts)), triangles(whole))
+        for part in parts:
+            self.assert_certified(part, 5)
+        for first in self.t.parts(error=5, memory="3M"):
+            break  # the rest is given up
+
+    def test_raster_of_the_source_is_the_source(self):
+        r = self.t.raster(error=None)
+        array, transform, crs = r
+        self.assert_array(array, (257, 257), "f8")
+        self.assert_certified(r, None)
+        self.assertEqual(crs, "EPSG:32611")
+        filled = self.t.raster(size=(257, 257), error=None)
+        np.testing.assert_array_equal(filled.array, array)
+        np.testing.assert_allclose(filled.transform, transform, rtol=1e-12)
+        rows, columns = np.mgrid[0:257:16, 0:257:16].reshape(2, -1)
+        xy = np.column_stack([transform.c + (columns + 0.5) * 30, transform.f - (rows + 0.5) * 30])
+        np.testing.assert_array_equal(self.t.locate(xy).z, array[rows, columns])
+
+    def test_raster_of_other_pixels(self):
+        fine = self.t.raster(size=(64, 32))
+        self.assert_array(fine.array, (32, 64), "f8")
+        self.assertFalse(np.isnan(fine.array).any())
+        self.assertFalse(fine.exact)
+        self.assert_certified(self.t.raster(size=(64, 32), error=3.0), 3)
+        window = (378000, 3803000, 379000, 3804000)
+        self.assertEqual(self.t.raster(window, pixel_size=100).array.shape, (10, 10))
+        self.assertEqual(self.t.raster(window, size=(40, 20)).transform, (25, 0, 378000, 0, -50, 3804000))
+        for wrong in ({"size": (0, 3)}, {"size": (2, 2), "pixel_size": 3}, {"pixel_size": -1}, {"error": "fine"}):
+            with self.assertRaises(ptin.InvalidArgument):
+                self.t.raster(**wrong)
+
+    def test_isolines(self):
+        for error in (None, 10.0):
+            lines = self.t.isolines(interval=100, error=error)
+            self.assert_array(lines.coords, (lines.offsets[-1], 2), "f8")
+            self.assert_array(lines.offsets, (len(lines) + 1,), "i8")
+            self.assert_array(lines.level, (len(lines),), "f8")
+            self.assert_array(lines.ring, (len(lines),), "?")
+            self.assert_certified(lines, error)
+        for line, level, ring in zip(lines.lines(), lines.level, lines.ring):
+            self.assertEqual(np.array_equal(line[0], line[-1]), bool(ring))
+        exact = self.t.isolines(levels=[1000])
+        np.testing.assert_allclose(self.t.locate(exact.coords).z, 1000, atol=1e-3)
+        self.assertEqual(len(self.t.isolines(levels=[9000])), 0)
+        self.assertEqual(len(self.t.isolines(interval=9000, base=100)), 0)
+        with self.assertRaises(ptin.InvalidArgument):
+            self.t.isolines()
+
+    def test_isolines_go_to_shapely_and_geopandas(self):
+        lines = self.t.isolines(interval=200)
+        try:
+            shapes = lines.to_shapely()
+        except ImportError:
+            self.skipTest("needs shapely")
+        self.assertEqual(len(shapes), len(lines))
+        np.testing.assert_array_equal(np.asarray(shapes[3].coords), list(lines.lines())[3])
+        try:
+            frame = lines.to_geopandas()
+        except ImportError:
+            self.skipTest("needs geopandas")
+        self.assertEqual((len(frame), frame.crs.to_epsg()), (len(lines), 32611))
+
+    def test_highest(self):
+        top = self.t.highest(listed=3)
+        self.assertEqual(top.point.height, self.t.height_range[1])
+        self.assert_array(top.vertices, (3, 3), "f8")
+        self.assert_certified(top, None)
+        self.assertEqual(self.t.highest(lowest=True).point.height, self.t.height_range[0])
+        about = self.t.highest(error=20)
+        self.assertTrue(about.height_min <= top.point.height <= about.height_max)
+        outside = self.t.highest(window=(0, 0, 1, 1))
+        self.assertEqual((outside.state, outside.point), ("outside", None))
+
+    def test_sight_and_viewshed(self):
+        hidden = self.t.sight(*EYES)
+        self.assertEqual((hidden.verdict, hidden.ends, hidden.exact), ("hidden", ("surface", "surface"), True))
+        self.assertLess(hidden.clearance.max, 0)
+        self.assertGreater(hidden.obstruction.distance, 0)
+        high = self.t.sight((*EYES[0][:2], 3000), (*EYES[1][:2], 3000), absolute=True, frequency=450e6)
+        self.assertEqual((high.verdict, high.obstruction), ("visible", None))
+        self.assertGreater(high.fresnel_ratio, 1)
+        seen = self.t.viewshed(EYES[0], radius=1500)
+        array, transform, crs = seen
+        self.assert_array(array, array.shape, "u1")
+        self.assert_certified(seen, None)
+        self.assertEqual((seen.visible, seen.hidden), ((array == 255).sum(), (array == 0).sum()))
+        self.assertGreater(self.t.viewshed(EYES[0], radius=1500, error=20).undecided, 0)
+        row, column = np.argwhere(array == 255)[7]
+        xy = (transform.c + (column + 0.5) * transform.a, transform.f + (row + 0.5) * transform.e)
+        self.assertEqual(self.t.sight(EYES[0], (*xy, 0)).verdict, "visible")
+
+    def test_volume(self):
+        v = self.t.volume(level=1000)
+        self.assert_certified(v, None)
+        self.assertEqual((v.level, v.net.volume), (1000, v.cut.volume - v.fill.volume))
+        about = self.t.volume(level=1000, error=20)
+        self.assertTrue(about.net.low <= v.net.volume <= about.net.high)
+        several = self.t.volume(level=[900, 1000])
+        self.assertEqual((several[0].level, several[1].cut), (900, v.cut))
+        same = self.t.volume(against="dem.ptin")
+        self.assertEqual((same.level, same.cut.volume, same.fill.volume), (None, 0, 0))
+        self.assertEqual(same.area.surface, v.area.surface)
+
+
+class Program(OnTerrain):
+    """The answers are those that the program tells."""
+
+    def test_locate(self):
+        for detail, error in (([], None), (["--error", 5], 5)):
+            json_answer = told("locate", "dem.ptin", 378000, 3804000, *detail)
+            h = self.t.locate((378000, 3804000), error=error)
+            point = json_answer["points"][0]
+            self.assertEqual((h.z, h.low, h.high), tuple(point[k] for k in ("height", "height_min", "height_max")))
+            for key in ("certified_error", "certified_deviation", "exact"):
+                self.assertEqual(getattr(h, key), json_answer[key])
+            self.assertEqual(self.t.border_moved_at_most(h.certified_error), json_answer["border_moved_at_most"])
+
+    def test_profile(self):
+        line = "LINESTRING(377000 3804000, 379000 3805000)"
+        json_answer = told("profile", "dem.ptin", "--line", line, "--stations", 100, "--error", 5)
+        p = self.t.profile([(377000, 3804000), (379000, 3805000)], stations=100, error=5)
+        for name, array in (("distance", p.distance), ("height", p.z), ("x", p.xy[:, 0]), ("station", p.station)):
+            self.assertEqual([point[name] for point in json_answer["points"]], array.tolist())
+        self.assertEqual(json_answer["length"], p.distance[-1])
+
+    def test_isolines(self):
+        json_answer = told("isoline", "dem.ptin", "--interval", 100, "--error", 5, "-o", "lines.geojson")
+        lines = self.t.isolines(interval=100, error=5)
+        self.assertEqual(json_answer["levels"], np.unique(lines.level).tolist())
+        told_counts = [json_answer[key] for key in ("lines", "rings", "points")]
+        self.assertEqual(told_counts, [len(lines), lines.ring.sum(), len(lines.coords)])
+
+    def test_highest(self):
+        json_answer = told("highest", "dem.ptin", "-k", 5, "--error", 10)
+        top = self.t.highest(listed=5, error=10)
+        self.assertEqual(json_answer["state"], top.state)
+        self.assertEqual([json_answer["point"][key] for key in ("x", "y", "height")], list(top.point))
+        for key in ("height_min", "height_max", "at_vertex"):
+            self.assertEqual(json_answer["point"][key], getattr(top, key))
+        vertices = [[vertex[key] for key in ("x", "y", "height")] for vertex in json_answer["vertices"]]
+        self.assertEqual(vertices, top.vertices.tolist())
+
+    def test_sight_and_volume(self):
+        ends = [number for end in EYES for number in end]
+        json_answer = told("sight", "dem.ptin", *ends)
+        s = self.t.sight(*EYES)
+        place = [json_answer["obstruction"][key] for key in ("x", "y", "distance", "height")]
+        self.assertEqual((json_answer["length"], place), (s.length, list(s.obstruction)))
+        self.assertEqual(json_answer["clearance"]["min"], s.clearance.min)
+        json_answer = told("volume", "dem.ptin", "--level", 1000, "--error", 5)
+        v = self.t.volume(level=1000, error=5)
+        for key in ("cut", "fill", "net"):
+            self.assertEqual(json_answer[key], getattr(v, key)._asdict())
+        self.assertEqual(json_answer["area"], v.area._asdict())
+
+    def test_facts(self):
+        info = told("info", "dem.ptin")
+        self.assertEqual(tuple(info["bounds"][key] for key in ("min_x", "min_y", "max_x", "max_y")), self.t.bounds)
+        self.assertEqual((info["heights"]["min"], info["heights"]["max"]), self.t.height_range)
+        self.assertEqual((info["source_samples"], info["vertices"]), (self.t.samples, self.t.vertices))
+        self.assertEqual((info["crs"]["code"], info["crs"]["wkt"]), (self.t.crs, self.t.wkt))
+
+
+class Errors(OnTerrain):
+    def test_exceptions_are_pythons_own_too(self):
+        with self.assertRaises(FileNotFoundError) as raised:
+            ptin.open("nothing.ptin")
+        self.assertIsInstance(raised.exception, ptin.NotFound)
+        self.assertEqual((raised.exception.code, raised.exception.context), ("not_found", "nothing.ptin"))
+        for wrong in (lambda: self.t.locate((0, float("nan"))), lambda: self.t.locate((0, 0), error=-1)):
+            with self.assertRaises(ValueError) as raised:
+                wrong()
+            self.assertIsInstance(raised.exception, ptin.InvalidArgument)
+        with self.assertRaises(MemoryError) as raised:
+            self.t.refine(memory=1000)
+        self.assertIsInstance(raised.exception, ptin.ResourceExhausted)
+        with open("dem.ptin", "rb") as whole, open("damaged.ptin", "wb") as damaged:
+            data = bytearray(whole.read())
+            data[200_000:1_000_000] = bytes(800_000)
+            damaged.write(data)
+        with self.assertRaises(OSError) as raised:
+            ptin.open("damaged.ptin").refine()
+        self.assertIsInstance(raised.exception, ptin.Corruption)
+
+    def test_a_refusal_names_arguments_and_no_options(self):
+        with self.assertRaises(ptin.InvalidArgument) as raised:
+            ptin.build(RASTER, "never.ptin", max_edge=3.0)
+        self.assertIn("max_edge is for", str(raised.exception))
+        self.assertNotIn("--", str(raised.exception))
+
+    def test_shapes_and_types_are_looked_at(self):
+        with self.assertRaises(ptin.InvalidArgument):
+            self.t.locate(np.zeros((3, 3)))
+        for wrong in ("text", [["a", "b"]], None):
+            with self.assertRaises((TypeError, ValueError)):
+                self.t.locate(wrong)
+
+    def test_a_closed_terrain_answers_no_more(self):
+        with ptin.open("dem.ptin") as t:
+            pass
+        with self.assertRaisesRegex(ValueError, "closed"):
+            t.locate((0, 0))
+
+
+class Elsewhere(OnTerrain):
+    """Files that a server has."""
+
+    def setUp(self):
+        super().setUp()
+        self.server = subprocess.Popen(
+            [sys.executable, os.path.join(ROOT, "tests/support/range_server.py"), "."],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        self.host = f"http://127.0.0.1:{int(self.server.stdout.readline())}"
+
+    def tearDown(self):
+        self.server.communicate()
+
+    def test_a_url_is_asked_as_a_file(self):
+        xy = positions(self.t, 30)
+        with ptin.open(f"{self.host}/plain/dem.ptin") as there:
+            np.testing.assert_array_equal(there.locate(xy, error=5).z, self.t.locate(xy, error=5).z)
+            again = pickle.loads(pickle.dumps(there))
+            self.assertEqual(again.locate(xy[0]).z, self.t.locate(xy[0]).z)
+        with self.assertRaises(ptin.NotFound):
+            ptin.open(f"{self.host}/missing/dem.ptin")
+
+    def test_ctrl_c_ends_waiting_for_a_server(self):
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            ptin.open(f"{self.host}/silent/dem.ptin").refine()
+        there = ptin.open(f"{self.host}/plain/dem.ptin")
+        there._opened.stop_waiting()  # as a signal does, for good; what is asked next opens it anew
+        self.assertEqual(there.locate((380000, 3804000)).z, self.t.locate((380000, 3804000)).z)
+
+
+class Process(OnTerrain):
+    """What the module does to the process: threads, signals, memory."""
+
+    def test_terrains_are_pickled_by_path(self):
+        there = pickle.loads(pickle.dumps(ptin.open("dem.ptin", memory="1G")))
+        os.makedirs("elsewhere", exist_ok=True)
+        os.chdir("elsewhere")
+        try:
+            self.assertEqual(there.highest().point, self.t.highest().point)
+        finally:
+            os.chdir("..")
+
+    def test_other_threads_run_while_a_question_is_answered(self):
+        asked, answered = threading.Event(), threading.Event()
+        counted = [0]
+
+        def count():
+            asked.wait()
+            while not answered.is_set():
+                counted[0] += 1
+
+        counter = threading.Thread(target=count)
+        counter.start()
+        asked.set()
+        self.t.locate(positions(self.t, 200_000))
+        answered.set()
+        counter.join()
+        self.assertGreater(counted[0], 1000)
+
+    def test_threads_ask_one_terrain(self):
+        xy = positions(self.t, 20_000)
+        expected = self.t.locate(xy).z
+        answers = [None] * 4
+
+        def ask(i):
+            answers[i] = self.t.locate(xy).z
+
+        threads = [threading.Thread(target=ask, args=(i,)) for i in range(len(answers))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for answer in answers:
+            np.testing.assert_array_equal(answer, expected)
+
+    def test_ctrl_c_ends_a_question(self):
+        xy = positions(self.t, 400_000)
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            while True:
+                self.t.locate(xy)
+        self.assertEqual(self.t.locate(xy[0]).state, ptin.State.SURFACE)
+
+    def test_ctrl_c_ends_a_build(self):
+        seen = threading.Event()
+
+        def handler(number, frame):
+            seen.set()
+            raise KeyboardInterrupt
+
+        def progress(stage, done, total):
+            if not seen.is_set():
+                os.kill(os.getpid(), signal.SIGINT)
+                seen.wait(60)
+
+        before = signal.signal(signal.SIGINT, handler)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                ptin.build(RASTER, "stopped.ptin", progress=progress)
+        finally:
+            signal.signal(signal.SIGINT, before)
+        self.assertEqual(ptin.build(RASTER, "stopped.ptin", discard=True, overwrite=True).samples, 66049)
+
+    def test_nothing_leaks(self):
+        window = (378000, 3803000, 379000, 3804000)
+        outside, xy = (-1.0, -1.0), positions(self.t, 1500)
+
+        def ask_all(times):
+            for _ in range(times):
+                self.t.locate(xy, error=5)
+                self.t.refine(window, error=20, clip=True)
+                self.t.raster(window, size=(20, 20))
+                self.t.isolines(interval=100, window=window)
+                self.t.profile(xy[:3], error=20)
+                self.t.highest(window)
+                for part in self.t.parts(error=50):
+                    break
+                try:
+                    self.t.locate(outside, error=-1)
+                except ptin.InvalidArgument:
+                    pass
+
+        def resident():
+            with open("/proc/self/statm") as statm:
+                return int(statm.read().split()[1]) * resource.getpagesize()
+
+        ask_all(20)
+        for _ in range(20_000):
+            self.t.locate(outside)
+        before = resident()
+        for _ in range(100_000):
+            self.t.locate(outside)
+        ask_all(100)
+        self.assertLess(resident() - before, 8 << 20)
+
+
+class Install(unittest.TestCase):
+    def test_the_component_is_a_package(self):
+        subprocess.run(
+            ["cmake", "--install", BUILD, "--component", "python", "--prefix", "installed"], check=True, stdout=subprocess.DEVNULL
+        )
+        (package,) = glob.glob("installed/lib/python3*/*-packages")
+        self.assertTrue(os.path.exists(f"{package}/ptin/py.typed"))
+        asked = "import ptin; print(ptin.__file__, ptin.__version__, ptin.open('dem.ptin').samples)"
+        environment = {**os.environ, "PYTHONPATH": package}
+        done = subprocess.run([sys.executable, "-c", asked], env=environment, check=True, capture_output=True, text=True)
+        self.assertEqual(done.stdout.split()[1:], [ptin.__version__, "66049"])
+        self.assertIn("installed", done.stdout)
+
+
+class Build(unittest.TestCase):
+    def test_progress_is_told(self):
+        calls = []
+        ptin.build(RASTER, "told.ptin", progress=lambda *call: calls.append(call))
+        self.assertTrue(all(0 <= done <= total for _, done, total in calls))
+        self.assertIn("collapsing", {stage for stage, _, _ in calls})
+
+    def test_what_progress_raises_comes_out(self):
+        def progress(stage, done, total):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            ptin.build(RASTER, "raised.ptin", progress=progress)
+        self.assertFalse(os.path.exists("raised.ptin"))
+
+    def test_a_bar_for_each_stage(self):
+        try:
+            importlib.import_module("tqdm")
+        except ImportError:
+            with self.assertRaises(ImportError):
+                ptin.build(RASTER, "bar.ptin", progress=True)
+            self.skipTest("needs tqdm")
+        ptin.build(RASTER, "bar.ptin", progress=True)
+
+    def test_a_grid_is_built_as_its_file(self):
+        array, transform = source()
+        for dtype in ("float32", "float64", "int16", "int32", "uint16", "uint32"):
+            report = ptin.build(
+                array.astype(dtype), f"{dtype}.ptin", transform=transform, a_srs="EPSG:32611", vertical_crs="EPSG:5773"
+            )
+            self.assertEqual((report.samples, report.void_samples, report.warnings), (66049, 0, []))
+            with ptin.open(f"{dtype}.ptin") as t:
+                self.assertEqual((t.crs, t.bounds), ("EPSG:32611", ptin.open("dem.ptin").bounds))
+                np.testing.assert_array_equal(t.raster(error=None).array, array)
+        for wrong in (array.astype("int64"), array[0], array[:, :, None]):
+            with self.assertRaises(ptin.InvalidArgument):
+                ptin.build(wrong, "wrong.ptin", transform=transform)
+
+    def test_voids_of_a_grid(self):
+        array, transform = source()
+        array = array.astype("float32")
+        holes = np.zeros(array.shape, dtype=bool)
+        holes[100:120, 50:90] = True
+        with_nan = np.where(holes, np.float32(np.nan), array)
+        masked = np.ma.MaskedArray(array, holes)
+        for name, grid, options in (
+            ("nan", with_nan, {}),
+            ("masked", masked, {}),
+            ("nodata", np.where(holes, -1, array).astype("int16"), {"nodata": -1}),
+            ("turned", with_nan[::-1], {}),
+        ):
+            steps = transform if name != "turned" else (30, 0, transform.c, 0, 30, transform.f - 257 * 30)
+            report = ptin.build(grid, f"{name}.ptin", transform=steps, **options)
+            self.assertEqual(report.void_samples, 800)
+            np.testing.assert_array_equal(np.isnan(ptin.open(f"{name}.ptin").raster(error=None).array), holes)
+
+    def test_points_are_built_as_their_file(self):
+        path = os.path.join(ROOT, "tests/data/ground_points.csv")
+        points = np.loadtxt(path, delimiter=",", skiprows=1)[:, :3]
+        ptin.build(path, "file.ptin")
+        report = ptin.build(points, "array.ptin")
+        with ptin.open("file.ptin") as of_file, ptin.open("array.ptin") as of_array:
+            self.assertEqual(report.samples, of_file.samples)
+            self.assertEqual(of_file.bounds, of_array.bounds)
+            xy = positions(of_file, 500)
+            np.testing.assert_array_equal(of_file.locate(xy).z, of_array.locate(xy).z)
+            with self.assertRaisesRegex(ptin.InvalidArgument, "pixel_size"):
+                of_array.raster()
+            self.assertEqual(of_array.raster(size=(30, 20)).array.shape, (20, 30))
+        points[:5, 2] = np.nan
+        self.assertEqual(ptin.build(points, "array.ptin", overwrite=True).left_out_points, 5)
+
+    def test_equal_arrays_make_equal_files(self):
+        array, transform = source()
+        grid, points = array[:40, :40], np.argwhere(np.ones((9, 9)))[:, [0, 1, 1]]
+        for name, one, options in (("g", grid, {"transform": transform}), ("p", points, {})):
+            files = []
+            for path in (f"{name}1.ptin", f"{name}2.ptin"):
+                ptin.build(one, path, **options)
+                with open(path, "rb") as built:
+                    files.append(built.read())
+            self.assertEqual(*files)
+
+    def test_options_are_those_of_the_program(self):
+        report = ptin.build(RASTER, "options.ptin", max_error=5.0, cost="roi", bbox=(377000, 3801000, 380000, 3804000))
+        self.assertLess(report.samples, 66049)
+        self.assertIn("max_error (float)", ptin.build.__doc__)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "none of error, roi"):
+            ptin.build(RASTER, "never.ptin", cost="cheap")
+        with self.assertRaisesRegex(TypeError, "no option"):
+            ptin.build(RASTER, "never.ptin", colour="red")
+        with self.assertRaises(ptin.InvalidArgument):
+            ptin.build(RASTER, "never.ptin", max_error="much")
+        with self.assertRaises(ptin.InvalidArgument):
+            ptin.build(RASTER, "options.ptin")
+
+
+class Documents(unittest.TestCase):
+    def test_examples_of_docstrings(self):
+        failed = 0
+        for name in ("ptin", "ptin.terrain", "ptin.results", "ptin.construct"):
+            module = importlib.import_module(name)
+            names = {**vars(module), "np": np, "ptin": ptin, "t": ptin.open("dem.ptin")}
+            result = doctest.testmod(module, extraglobs=names)
+            failed += result.failed
+        self.assertEqual(failed, 0)
+
+    def test_the_page(self):
+        """Every block of the page runs, in its order. Where Matplotlib is not installed nothing is drawn; PTIN_PICTURES
+        names a folder for what is."""
+        from unittest import mock
+
+        try:
+            import matplotlib
+
+            matplotlib.use("Agg")
+            absent = {}
+        except ImportError:
+            pyplot = mock.MagicMock()
+            pyplot.subplots.return_value = (mock.MagicMock(), mock.MagicMock())
+            absent = {"matplotlib": mock.MagicMock(pyplot=pyplot), "matplotlib.pyplot": pyplot}
+        for name in ("tqdm", "tqdm.auto", "geopandas", "trimesh"):
+            try:
+                importlib.import_module(name)
+            except ImportError:
+                absent[name] = mock.MagicMock()
+        with open(os.path.join(ROOT, "tools/python/README.md")) as page:
+            blocks = page.read().split("```python\n")[1:]
+        with open("wells.csv", "w") as wells:
+            wells.write("x,y,name\n378000,3804000,a\n380000,3805000,b\n0,0,c\n")
+        os.symlink(os.path.join(ROOT, "tests"), "tests")
+        with mock.patch.dict(sys.modules, absent):
+            names = {}
+            for block in blocks:
+                exec(compile(block.split("```")[0], "README.md", "exec"), names)
+        self.assertGreater(len(blocks), 5)
+        for picture in glob.glob("*.png") if "PTIN_PICTURES" in os.environ else ():
+            shutil.copy(picture, os.environ["PTIN_PICTURES"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:])

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Heights at pixels.
+#include <array>
+#include <variant>
+
+#include "engine/error.h"
+#include "tools/export/pixel_grid.h"
+#include "tools/facts/source_count.h"
+#include "tools/python/binding.h"
+
+namespace ptin::python {
+
+namespace {
+
+using Pair = std::array<double, 2>;
+using Counts = std::array<std::int64_t, 2>;
+
+/// The window, or where none is given what the terrain covers: the box of its samples, of a raster
+/// with half a pixel around it, as GDAL has it.
+Window covered(const OpenTerrain& t, const std::optional<std::array<double, 4>>& window,
+               const std::optional<MapPoint>& own) {
+  if (window) return {(*window)[0], (*window)[1], (*window)[2], (*window)[3]};
+  const StoreFacts& facts = t.terrain.store().facts();
+  const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
+  const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
+  const MapPoint half = own ? MapPoint{own->x / 2, own->y / 2} : MapPoint{};
+  return {low.x - half.x, low.y - half.y, high.x + half.x, high.y + half.y};
+}
+
+/// So many columns and rows, whose areas fill the window.
+RasterRequest pixels_that_fill(const Window& window, const Counts& size,
+                               const std::optional<MapPoint>& own) {
+  if (size[0] < 1 || size[1] < 1) refuse("a size is columns and rows, each at least 1", "size");
+  if (!(window.min_x < window.max_x && window.min_y < window.max_y)) {
+    refuse("the window is inverted or empty; its order is xmin ymin xmax ymax", "window");
+  }
+  RasterRequest request;
+  PixelLattice& lattice = request.lattice;
+  lattice.step_x = (window.max_x - window.min_x) / static_cast<double>(size[0]);
+  lattice.step_y = -(window.max_y - window.min_y) / static_cast<double>(size[1]);
+  lattice.origin = {window.min_x + lattice.step_x / 2, window.max_y + lattice.step_y / 2};
+  // The frame of half a pixel around the samples of a raster belongs to them.
+  if (own) lattice.margin = {own->x / 2, own->y / 2};
+  request.pixels = {0, 0, size[0], size[1]};
+  return request;
+}
+
+RasterRequest pixels_of(const OpenTerrain& t, const std::optional<std::array<double, 4>>& window,
+                        const std::optional<Counts>& size, const std::optional<Pair>& pixel_size) {
+  const std::optional<MapPoint> own = tools::own_pixel_of(t.terrain.store());
+  if (size && pixel_size) refuse("a raster has a size or a pixel_size; leave one out");
+  if (size) return pixels_that_fill(covered(t, window, own), *size, own);
+  if (!pixel_size && !own) {
+    refuse(
+        "this terrain was not built from a raster, so it has no pixel size of its own; give size "
+        "or pixel_size");
+  }
+  const Pair side = pixel_size ? *pixel_size : Pair{own->x, own->y};
+  if (!(side[0] > 0 && side[1] > 0)) refuse("the sides of a pixel are above 0", "pixel_size");
+  std::optional<Window> asked;
+  if (window) asked = covered(t, window, own);
+  return tools::pixels_in(asked, side, t.terrain.store().facts());
+}
+
+py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>>& window,
+                 const std::optional<Counts>& size, const std::optional<Pair>& pixel_size,
+                 bool as_fine_as_pixels, const Asked& asked) {
+  std::stop_source stop;
+  RasterRequest request = pixels_of(t, window, size, pixel_size);
+  asked.put(request, stop.get_token());
+  request.as_fine_as_pixels = as_fine_as_pixels;
+  const PixelRect& pixels = request.pixels;
+  if (pixels.width > INT32_MAX || pixels.height > INT32_MAX) {
+    refuse("the raster would have more than 2^31 - 1 columns or rows", "size");
+  }
+  py::array_t<double> heights({pixels.height, pixels.width});
+  const std::span<double> places(heights.mutable_data(), static_cast<std::size_t>(pixels.pixels()));
+  const RasterResult found = answer(t, stop, [&] { return t.terrain.raster(request, places); });
+  const std::array<double, 6> g = tools::geotransform_of(request);
+  return py::make_tuple(heights, py::make_tuple(g[1], g[2], g[0], g[4], g[5], g[3]),
+                        certificate_of(found));
+}
+
+}  // namespace
+
+void add_rasters(py::module_& module) { module.def("raster", raster); }
+
+}  // namespace ptin::python
