@@ -65,6 +65,8 @@ class PointStream {
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   /// The progress at the end, in the unit of done(); 0 where it is unknown.
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;
+  /// True where points are compressed: reading them is work, more than what becomes of them at once.
+  [[nodiscard]] virtual bool is_compressed() const noexcept { return false; }
 };
 
 }  // namespace ptin
