@@ -48,8 +48,8 @@ std::ptrdiff_t order_of(Item item) {
 
 [[noreturn]] void refuse_record(const std::string& path) {
   throw Error(ErrorCode::invalid_argument,
-              "the record that says how the points are compressed does not fit the header; the "
-              "file is damaged",
+              "the record that says how the points are compressed is not there, or does not fit "
+              "the header; the file is damaged",
               path);
 }
 

@@ -21,6 +21,7 @@ constexpr std::uint64_t kBatchBytes = std::uint64_t{1} << 18;
 constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;
 /// A scale with more digits after the point is taken for a binary fraction, not for a decimal.
 constexpr int kMostScaleDecimals = 9;
+constexpr int kOverlapClass = 12;
 
 /// Where compressed points are and how they are compressed, which a record says.
 laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& header) {
@@ -218,10 +219,22 @@ SourceWarnings LasReader::warnings() const {
   return all;
 }
 
+/// The class. Formats 0 to 5 hold flags and class in one byte, formats 6 to 10 in two.
+int LasReader::class_of(const unsigned char* record) const noexcept {
+  return header_.point_format < 6 ? record[15] & 0x1f : record[16];
+}
+
+/// Counts a point that is not withheld. In formats 0 to 5 overlap is a class, else a flag.
+void LasReader::count_class(const unsigned char* record) {
+  const int cls = class_of(record);
+  ++counted_.points[static_cast<std::size_t>(cls)];
+  counted_.overlap += header_.point_format < 6 ? cls == kOverlapClass : (record[15] & 0x08) != 0;
+}
+
 /// Counts what there is to be warned of in a point that is handed out.
 void LasReader::look_at(const unsigned char* record) {
   const bool is_old = header_.point_format < 6;
-  const int cls = is_old ? record[15] & 0x1f : record[16];
+  const int cls = class_of(record);
   noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old)) ? 1 : 0;
   if (returns_ != ReturnChoice::kAll) {
     const int number = record[14] & (is_old ? 0x07 : 0x0f);
@@ -256,14 +269,15 @@ bool LasReader::is_wanted_return(const unsigned char* record) const {
   return number == 0 || number >= count;
 }
 
-/// Why a point is left out: it is withheld, or of a class or a return that is not kept. Formats 0 to 5
-/// hold flags and class in one byte, formats 6 to 10 in two.
-std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) const {
+/// Why a point is left out: it is withheld, or of a class or a return that is not kept. One that is not
+/// withheld is counted.
+std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) {
   const bool is_old = header_.point_format < 6;
   if ((record[15] & (is_old ? 0x80 : 0x04)) != 0) {
     return LeftOutReason::kWithheld;
   }
-  if (!classes_.test(is_old ? record[15] & 0x1f : record[16])) {
+  count_class(record);
+  if (!classes_.test(static_cast<std::size_t>(class_of(record)))) {
     return LeftOutReason::kClass;
   }
   return is_wanted_return(record) ? std::nullopt : std::optional(LeftOutReason::kReturn);

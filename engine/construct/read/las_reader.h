@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/construct/grid/point_classes.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
@@ -72,6 +73,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] const PointStreamFacts& facts() const noexcept override { return facts_; }
   [[nodiscard]] bool next(std::vector<SourcePoint>& batch) override;
   [[nodiscard]] LeftOutPoints left_out() const noexcept override { return left_out_; }
+  [[nodiscard]] PointClasses classes() const override { return counted_; }
   [[nodiscard]] SourceWarnings warnings() const override;
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_ - begin_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
@@ -96,9 +98,11 @@ class LasReader final : public PointStream {
   void read_declarations();
   void warn(const char* kind, std::string message);
   void check_counts();
+  [[nodiscard]] int class_of(const unsigned char* record) const noexcept;
   void look_at(const unsigned char* record);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
-  [[nodiscard]] std::optional<LeftOutReason> why_unwanted(const unsigned char* record) const;
+  void count_class(const unsigned char* record);
+  [[nodiscard]] std::optional<LeftOutReason> why_unwanted(const unsigned char* record);
 
   std::string path_;
   std::unique_ptr<LasFile> file_;
@@ -114,6 +118,7 @@ class LasReader final : public PointStream {
   std::uint64_t begin_ = 0, end_ = 0;  ///< The records of the part.
   std::uint64_t read_ = 0;             ///< The next record.
   LeftOutPoints left_out_;
+  PointClasses counted_;
   bool has_box_ = false, names_classes_ = false;
   /// Steps of the header's box, one more on each side.
   std::array<double, 3> low_{}, high_{};

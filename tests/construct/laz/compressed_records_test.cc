@@ -17,52 +17,18 @@
 #include "engine/construct/laz/las_value.h"
 #include "engine/error.h"
 #include "tests/construct/laz/laz_file.h"
+#include "tests/construct/laz/made_las.h"
 #include "tests/support/las_file.h"
 
 namespace ptin::laz {
 namespace {
 
+using oracle::made_las;
+
 constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
 
 std::span<const unsigned char> bytes_of(const std::string& text) {
   return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
-}
-
-/// A file whose points change as those of scans do: much stays, some of it moves a little, and at times
-/// anything comes.
-/// @param constant  Formats 6 to 10: what is not read never changes, but for the time.
-std::string made_las(int format, int extra, std::size_t points, std::uint32_t seed) {
-  LasFileMaker las;
-  las.minor = format < 6 ? 3 : 4;
-  las.format = format;
-  las.extra_bytes = extra;
-  las.points.resize(points);
-  std::string file = las.bytes();
-  const auto first = las_value<std::uint32_t>(bytes_of(file), 96);
-  const auto step = las_value<std::uint16_t>(bytes_of(file), 105);
-  std::mt19937 random(seed);
-  const auto chance = [&](std::uint32_t of) { return random() % of == 0; };
-  for (std::size_t i = 1; i < points; ++i) {
-    char* const p = file.data() + first + i * step;
-    std::memcpy(p, p - step, step);
-    for (std::size_t at = 0; at < step; at += at < 12 ? 4 : 1) {
-      const bool is_read = at < 12 || (at >= 14 && at < 17);
-      const bool is_time = at == 22;
-      if (format >= 6 && !is_read && !is_time) continue;
-      if (at < 12 && !chance(20)) {
-        std::int32_t value = 0;
-        std::memcpy(&value, p + at, 4);
-        value += static_cast<std::int32_t>(random() % 2000) - 1000;
-        std::memcpy(p + at, &value, 4);
-      } else if (at < 12 ? chance(4) : chance(12)) {
-        const std::uint32_t value = random();
-        std::memcpy(p + at, &value, at < 12 ? 4 : 1);
-      } else if (at >= 12 && chance(6)) {
-        ++p[at];
-      }
-    }
-  }
-  return file;
 }
 
 /// What a file says of its points; its records hold nothing but how they are compressed.
