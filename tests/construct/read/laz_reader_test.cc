@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // LAZ is read as LAS is: the same points, choices, warnings and CRS, and the same file is built.
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -44,7 +46,8 @@ std::string told_by(const std::string& bytes, const PointChoice& choice = {}) {
   told += "left " + std::to_string(reader.left_out().of(LeftOutReason::kWithheld)) + " " +
           std::to_string(reader.left_out().total()) + " classes " + reader.classes().names() +
           " overlap " + std::to_string(reader.classes().overlap) + reader.facts().crs;
-  for (const SourceWarning& w : reader.warnings().all()) {
+  const SourceWarnings warnings = reader.warnings();
+  for (const SourceWarning& w : warnings.all()) {
     told += "\n" + w.kind + " " + std::to_string(w.count);
   }
   EXPECT_EQ(reader.done(), reader.total());
