@@ -26,7 +26,7 @@ struct PortionSizes {
   std::uint64_t text_bytes = std::uint64_t{16} << 20;
   std::uint64_t las_records = std::uint64_t{1} << 19;
   /// Of LAZ, a chunk more or less. A few chunks make a portion, so that all threads end together.
-  std::uint64_t laz_records = std::uint64_t{1} << 17;
+  std::uint64_t laz_records = std::uint64_t{1} << 18;
 };
 
 /// True for a pipe, a socket or a device: what is read of it is gone.
