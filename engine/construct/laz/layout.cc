@@ -19,17 +19,17 @@ enum Compressor : std::uint16_t { kPointWise = 1, kPointWiseChunked = 2, kLayere
 
 /// What is known of a kind of part.
 struct KnownItem {
-  Item item;
   std::uint32_t bytes;  ///< 0: any number.
+  Item item;
   std::uint16_t first_version, last_version;
   bool is_layered;
 };
 constexpr KnownItem kKnown[] = {
-    {Item::kPoint10, 20, 2, 2, false},     {Item::kGpsTime11, 8, 2, 2, false},
-    {Item::kRgb12, 6, 2, 2, false},        {Item::kWavePacket13, 29, 1, 1, false},
-    {Item::kBytes, 0, 2, 2, false},        {Item::kPoint14, 30, 2, 4, true},
-    {Item::kRgb14, 6, 2, 4, true},         {Item::kRgbNir14, 8, 2, 4, true},
-    {Item::kWavePacket14, 29, 2, 4, true}, {Item::kBytes14, 0, 2, 4, true},
+    {20, Item::kPoint10, 2, 2, false},     {8, Item::kGpsTime11, 2, 2, false},
+    {6, Item::kRgb12, 2, 2, false},        {29, Item::kWavePacket13, 1, 1, false},
+    {0, Item::kBytes, 2, 2, false},        {30, Item::kPoint14, 2, 4, true},
+    {6, Item::kRgb14, 2, 4, true},         {8, Item::kRgbNir14, 2, 4, true},
+    {29, Item::kWavePacket14, 2, 4, true}, {0, Item::kBytes14, 2, 4, true},
 };
 
 /// The place of a part in a point: that of kKnown.
