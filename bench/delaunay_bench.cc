@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The Delaunay stage of points: buckets on disk to the triangles of tiles. Items are points of
-// tiles, so that margins count as work and not as output.
+// The stages of points: reading files, sorting into buckets on disk, and the triangles of tiles, where
+// items are points of tiles, so that margins count as work and not as output.
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <random>
 #include <string>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include "bench/support/scratch.h"
 #include "engine/construct/delaunay/tile_delaunay.h"
 #include "engine/construct/points/point_source.h"
+#include "engine/construct/read/las_reader.h"
 #include "engine/construct/tasks/task_driver.h"
 #include "tests/construct/memory_file.h"
 #include "tests/support/las_file.h"
@@ -112,6 +115,25 @@ BENCHMARK(Buckets)
     ->ArgNames({"points", "memory"})
     ->Args({1'000'000, 64})
     ->Args({1'000'000, 2})
+    ->Unit(benchmark::kMillisecond);
+
+/// Points of a file, compressed or not, as a stream of decimals: time of the processor, a thread.
+void Reading(benchmark::State& state, const char* name) {
+  const std::string path = bench::shared_terrain(name);
+  if (path.empty()) return state.SkipWithError("needs the larger terrains of PTIN_SHARED_DATA");
+  std::uint64_t points = 0;
+  for (auto _ : state) {
+    LasReader reader(path, {});
+    std::vector<SourcePoint> batch;
+    while (reader.next(batch)) points += batch.size();
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(points));
+}
+BENCHMARK_CAPTURE(Reading, las_format_3, "autzen_trim.las")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Reading, laz_format_3, "laz/autzen_trim.laz")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Reading, las_format_7, "ign_lidarhd_0382_6565_crop.las")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Reading, laz_format_7, "laz/ign_lidarhd_0382_6565_crop.laz")
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

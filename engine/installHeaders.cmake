@@ -13,6 +13,7 @@ set(public_headers
     engine/construct/build_plan.h
     engine/construct/build_parts.h
     engine/construct/grid/left_out.h
+    engine/construct/grid/point_classes.h
     engine/construct/grid/source_disk.h
     engine/construct/grid/source_options.h
     engine/construct/grid/source_warning.h

@@ -13,6 +13,7 @@
 #include "engine/construct/build_options.h"
 #include "engine/construct/build_plan.h"
 #include "engine/construct/grid/left_out.h"
+#include "engine/construct/grid/point_classes.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/scratch/workspace.h"
 
@@ -48,6 +49,7 @@ struct BuildReport {
   std::uint64_t void_samples = 0;    ///< Rasters: without a height.
   std::uint64_t lone_samples = 0;    ///< Samples that touch no surface triangle, treated as void.
   LeftOutPoints left_out;            ///< Points; of a TIN, vertices.
+  PointClasses classes;              ///< Points of LAS, also of classes that are left out.
   std::vector<std::string> empty_inputs;  ///< Points: files without any, not even one left out.
   SourceWarnings warnings;                ///< Those of the inputs, and of the lines.
   std::uint64_t left_out_triangles = 0;   ///< TINs: hidden, or with a corner of no height.

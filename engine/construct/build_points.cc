@@ -113,6 +113,7 @@ void report_counts(const Job& job, const PointBuckets& points, BuildReport& repo
   report.warnings.join(points.warnings());
   report.source_samples = report.vertices = points.size();
   report.left_out = points.counts().left_out;
+  report.classes = points.counts().classes;
   report.merged_points = points.counts().merged_points;
   report.largest_shift_plan = points.counts().largest_shift_plan;
   report.largest_shift_height = points.counts().largest_shift_height;

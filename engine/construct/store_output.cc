@@ -29,19 +29,37 @@ GridBox bounds_of(const Tin& tin) {
   return bounds;
 }
 
+/// Points by class, but for those that are withheld.
+nlohmann::json classes_json(const PointClasses& counted) {
+  nlohmann::json classes = nlohmann::json::object();
+  for (std::size_t i = 0; i < counted.points.size(); ++i) {
+    if (counted.points[i] > 0) {
+      classes[std::to_string(i)] = counted.points[i];
+    }
+  }
+  return classes;
+}
+
 nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildReport& r) {
   nlohmann::json files = nlohmann::json::array();
   for (const std::string& input : inputs) {
     files.push_back(std::filesystem::path(input).filename().string());
   }
-  return {{"files", files},
-          {"samples", r.source_samples},
-          {"void_samples", r.void_samples},
-          {"lone_samples", r.lone_samples},
-          {"left_out_points", r.left_out.total()},
-          {"merged_points", r.merged_points},
-          {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
-          {"height_rounding", r.height_rounding}};
+  nlohmann::json source = {
+      {"files", files},
+      {"samples", r.source_samples},
+      {"void_samples", r.void_samples},
+      {"lone_samples", r.lone_samples},
+      {"left_out_points", r.left_out.total()},
+      {"merged_points", r.merged_points},
+      {"largest_shift", {{"plan", r.largest_shift_plan}, {"height", r.largest_shift_height}}},
+      {"height_rounding", r.height_rounding}};
+  if (r.classes.are_known()) {
+    source["classes"] = classes_json(r.classes);
+    source["overlap"] = r.classes.overlap;
+    source["withheld"] = r.left_out.of(LeftOutReason::kWithheld);
+  }
+  return source;
 }
 
 }  // namespace

@@ -100,8 +100,9 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
 ask::Parameters build_rows(BuildCommand& command) {
   ask::Parameters rows;
   rows.add("input", &command.inputs, "",
-           "A raster that GDAL reads, several of one grid, or points: LAS, CSV or XYZ text (.gz "
-           "too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, 2DM, "
+           "A raster that GDAL reads, several of one grid, or points: LAS, LAZ, CSV or XYZ text "
+           "(.gz too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, "
+           "2DM, "
            "LandXML")
       .spelled("INPUT")
       .values(1, ask::kAnyNumberOfValues);

@@ -34,7 +34,7 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin build north.vrt -o north.ptin --max-error 5 --vertical-crs EPSG:5773\n"
      "  ptin build points.csv -o points.ptin --a-srs EPSG:2154 --resolution 0.01\n"
      "  ptin build survey.txt -o survey.ptin --columns id n e z code\n"
-     "  ptin build scan_*.las --class 2 -o ground.ptin\n"
+     "  ptin build scan_*.laz --class 2 -o ground.ptin\n"
      "  ptin build survey.gpkg --layer spots --z-field height -o survey.ptin\n",
      declare_build},
     {"build-part", "Do one job of a build that was divided by `ptin build --parts`",

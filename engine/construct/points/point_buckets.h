@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/construct/grid/left_out.h"
+#include "engine/construct/grid/point_classes.h"
 #include "engine/construct/grid/source_disk.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_warning.h"
@@ -35,6 +36,7 @@ struct BucketPoint {
 struct PointCounts {
   std::uint64_t source_points = 0;  ///< Read and not left out.
   LeftOutPoints left_out;
+  PointClasses classes;
   std::uint64_t merged_points = 0;  ///< source_points less the distinct positions.
   /// How far a point moved at most: in plan when it was snapped to the grid (CRS units; 0 where the
   /// grid keeps every digit), and in height when it was merged (height's unit).

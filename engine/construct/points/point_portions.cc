@@ -18,9 +18,9 @@ namespace {
 
 /// How much of the file is one portion, in the unit of PointStream::total(); 0: all of it.
 std::uint64_t size_of_portion(const std::string& path, PointFormat format,
-                              const PortionSizes& sizes) {
+                              const PointStream& stream, const PortionSizes& sizes) {
   if (format == PointFormat::kLas) {
-    return sizes.las_records;
+    return stream.is_compressed() ? sizes.laz_records : sizes.las_records;
   }
   // From the middle of an archive or of a packed file nobody reads without reading what is before.
   const bool is_file = !path.starts_with("/vsi") || path.starts_with("/vsimem/");
@@ -111,7 +111,7 @@ std::vector<PointPortion> cut_into_portions(const std::vector<std::string>& inpu
     }
     const auto stream = open_point_stream(path, options.points, options.nodata);
     agreement.add(stream->facts(), path);
-    cut(whole, stream->total(), size_of_portion(path, format, sizes), portions);
+    cut(whole, stream->total(), size_of_portion(path, format, *stream, sizes), portions);
   }
   return portions;
 }

@@ -25,6 +25,8 @@ struct PointPortion {
 struct PortionSizes {
   std::uint64_t text_bytes = std::uint64_t{16} << 20;
   std::uint64_t las_records = std::uint64_t{1} << 19;
+  /// Of LAZ, a chunk more or less. A few chunks make a portion, so that all threads end together.
+  std::uint64_t laz_records = std::uint64_t{1} << 18;
 };
 
 /// True for a pipe, a socket or a device: what is read of it is gone.
@@ -50,7 +52,7 @@ class SourceAgreement {
   DeclaredUnits units_;
 };
 
-/// Cuts all files, in their order. It depends on the files alone: LAS is cut by records, text that is
+/// Cuts all files, in their order. It depends on the files alone: LAS is cut by records, LAZ by chunks, text that is
 /// a file of the system's by bytes; TINs, layers, packed text and pipes are read as a whole.
 /// Cost: opens each file, but for TINs and what can be read only once.
 /// @throws Error as open_point_stream() and SourceAgreement

@@ -79,6 +79,7 @@ PortionRead PortionReader::read_to_spool(const PointPortion& portion, std::uint6
     }
   }
   result.left_out.join(stream->left_out());
+  result.classes = stream->classes();
   result.rows = stream->rows();
   result.warnings = stream->warnings();
   result.warnings.join(of_crs);
@@ -176,6 +177,11 @@ void add_lines(const SourceLines& lines, const SourceOptions& options, const Poi
   }
 }
 
+/// A clause for who chose among classes.
+std::string classes_that_are_there(const PointClasses& classes) {
+  return classes.are_known() ? "; there are points of the classes " + classes.names() : "";
+}
+
 /// Every step-th of the samples of a portion; their weight grows by as much.
 void add_samples(const PortionRead& read, std::size_t step, PointReading& reading) {
   for (std::size_t i = 0; i < read.samples.size(); i += step) {
@@ -209,6 +215,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     points_of[p.portion.input] += read.extent.points + read.left_out.total();
     reading.scan.add(read.extent);
     reading.left_out.join(read.left_out);
+    reading.classes.join(read.classes);
     reading.warnings.join(warnings_that_count(read.warnings, options, lines_before));
     if (read.extent.points > 0) {
       reading.spools.push_back({p.number, read.extent.points, read.spool});
@@ -220,7 +227,8 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     refuse(reading.left_out.total() == 0
                ? "there is no point in this file"
                : "every point is left out: none lies in the bounds, with a height and of a chosen "
-                 "class",
+                 "class" +
+                     classes_that_are_there(reading.classes),
            context);
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {

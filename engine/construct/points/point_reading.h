@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/construct/grid/left_out.h"
+#include "engine/construct/grid/point_classes.h"
 #include "engine/construct/grid/point_grid.h"
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
@@ -51,6 +52,7 @@ struct PortionRead {
   PointStreamFacts source;
   PointExtent extent;        ///< Extent of the wanted points.
   LeftOutPoints left_out{};  ///< By the stream, or since they are not wanted.
+  PointClasses classes{};    ///< All points of the stream.
   std::optional<RowsOfPart> rows;
   SourceWarnings warnings;  ///< Those of PointStream::warnings().
   std::vector<SampledPoint> samples;
@@ -61,7 +63,7 @@ template <class File, MaybeConst<PortionRead> Read>
 void serialize(File& file, Read& r) {
   file.values(r.source.crs, r.source.vertical_crs, r.source.units.plane, r.source.units.heights,
               r.source.plan_decimals, r.source.height_decimals, r.source.lattice, r.extent,
-              r.left_out, r.rows, r.warnings, r.samples, r.sample_step, r.spool);
+              r.left_out, r.classes, r.rows, r.warnings, r.samples, r.sample_step, r.spool);
 }
 
 /// The portions of one stage of reading.
@@ -114,6 +116,7 @@ struct PointReading {
   std::string crs_path{};      ///< The file that declared these first.
   PointGridScan scan;          ///< What all points and files say.
   LeftOutPoints left_out{};
+  PointClasses classes{};
   std::vector<std::uint64_t> empty_inputs{};  ///< The numbers of those that have no point at all.
   SourceWarnings warnings{};                  ///< Warnings of all portions.
   struct Spool {

@@ -162,6 +162,7 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   index.warnings.join(reading_->scan.warnings());
   index.counts.source_points = reading_->scan.points();
   index.counts.left_out = reading_->left_out;
+  index.counts.classes = reading_->classes;
   index.empty_inputs = reading_->empty_inputs;
   if (are_axes_exchanged(index.frame, grid.east - grid.west, grid.north - grid.south)) {
     index.warnings.add(

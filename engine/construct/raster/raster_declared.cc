@@ -166,8 +166,8 @@ GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnin
   }
   require_readable(path);
   refuse(session.explain("this is neither a raster nor a layer that GDAL reads; LAS, text and "
-                         "TINs are known by their names: .las, .csv, .xyz, .txt, .ply, .obj, .2dm, "
-                         ".xml"),
+                         "TINs are known by their names: .las, .laz, .csv, .xyz, .txt, .ply, .obj, "
+                         ".2dm, .xml"),
          path);
 }
 

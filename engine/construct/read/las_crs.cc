@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/construct/grid/crs.h"
+#include "engine/construct/read/las_records.h"
 
 namespace ptin {
 
@@ -18,7 +19,6 @@ namespace {
 
 using Bytes = std::vector<unsigned char>;
 
-constexpr std::uint64_t kMostRecords = 65536;  // that are looked at
 constexpr std::uint64_t kMostCrsBytes = std::uint64_t{1} << 24;
 
 constexpr std::uint16_t kMathTransform = 2111, kWkt = 2112;
@@ -32,13 +32,6 @@ struct LasRecords {
   GeoTiffKeys keys;  ///< The last of each kind of record.
   bool has_math_transform = false;
   std::vector<SourceWarning> warnings;  ///< About records that are not there; they name no file.
-};
-
-/// Where records lie, and what the header says of them.
-struct RecordPlace {
-  std::uint64_t begin = 0, end = 0;  ///< Bytes of the file.
-  std::uint64_t count = 0;
-  bool extended = false;  ///< Records have lengths of 64 bits.
 };
 
 std::string_view text_of(std::span<const unsigned char> bytes) {
@@ -80,39 +73,17 @@ void take_record(const LasFile& file, std::uint16_t id, std::uint64_t at, std::u
   }
 }
 
-/// Walks records; returns how many there are before place.end.
+/// Reads the records of a place that are about the CRS.
 /// @param of_liblas  Receives texts under the name of that library, of which others know nothing.
-std::uint64_t walk(const LasFile& file, const RecordPlace& place, LasRecords& records,
-                   LasRecords& of_liblas) {
-  const std::uint64_t head_bytes = place.extended ? 60 : 54;
-  Bytes head(head_bytes);
-  std::uint64_t at = place.begin;
-  for (std::uint64_t i = 0; i < std::min(place.count, kMostRecords); ++i) {
-    if (at > place.end || head_bytes > place.end - at) {
-      return i;
+void walk_all(const LasFile& file, const LasRecordPlace& place, const char* where,
+              LasRecords& records, LasRecords& of_liblas) {
+  const std::uint64_t there = walk_records(file, place, [&](const LasRecordHead& head) {
+    if (head.user == "LASF_Projection") {
+      take_record(file, head.id, head.at, head.bytes, records);
+    } else if (head.user == "liblas" && head.id == kWkt) {
+      take_record(file, head.id, head.at, head.bytes, of_liblas);
     }
-    file.read(at, head);
-    at += head_bytes;
-    const std::uint64_t bytes =
-        place.extended ? las_value<std::uint64_t>(head, 20) : las_value<std::uint16_t>(head, 20);
-    if (bytes > place.end - at) {
-      return i;
-    }
-    const std::string_view user = text_of(std::span(head).subspan(2, 16));
-    const auto id = las_value<std::uint16_t>(head, 18);
-    if (user == "LASF_Projection") {
-      take_record(file, id, at, bytes, records);
-    } else if (user == "liblas" && id == kWkt) {
-      take_record(file, id, at, bytes, of_liblas);
-    }
-    at += bytes;
-  }
-  return place.count;
-}
-
-void walk_all(const LasFile& file, const RecordPlace& place, const char* where, LasRecords& records,
-              LasRecords& of_liblas) {
-  const std::uint64_t there = walk(file, place, records, of_liblas);
+  });
   if (there < place.count) {
     records.warnings.push_back({"las_records",
                                 "the header counts " + std::to_string(place.count) + " records " +
@@ -126,12 +97,9 @@ void walk_all(const LasFile& file, const RecordPlace& place, const char* where, 
 /// points begin, those behind the points with the file, whatever the header counts.
 LasRecords read_las_records(const LasFile& file, const LasHeader& header) {
   LasRecords records, of_liblas;
-  const std::uint64_t points_begin = std::min(header.first_point, file.bytes());
-  walk_all(file, {header.header_bytes, points_begin, header.records, false}, "before the points",
-           records, of_liblas);
+  walk_all(file, records_before_points(file, header), "before the points", records, of_liblas);
   if (header.extended_records > 0) {
-    walk_all(file, {header.first_extended, file.bytes(), header.extended_records, true},
-             "behind the points", records, of_liblas);
+    walk_all(file, records_behind_points(file, header), "behind the points", records, of_liblas);
   }
   if (records.wkt.empty()) {
     records.wkt = std::move(of_liblas.wkt);

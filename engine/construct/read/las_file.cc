@@ -11,6 +11,7 @@
 #include <gdal_priv.h>
 
 #include "engine/construct/grid/gdal_session.h"
+#include "engine/construct/laz/las_value.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -19,6 +20,7 @@ namespace {
 using Bytes = std::vector<unsigned char>;
 
 constexpr std::size_t kHeaderBytes[] = {227, 227, 227, 235, 375};  // by minor version
+constexpr int kCompressedBit = 0x80;                               // of the point format
 constexpr std::uint32_t kFormatBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
 [[noreturn]] void refuse_las(const LasFile& file, const std::string& sentence) {
@@ -38,12 +40,8 @@ void check_version(const LasFile& file, int major, int minor) {
              "the header says LAS " + version + ", which does not exist; the file is damaged");
 }
 
-void check_format(const LasFile& file, const LasHeader& h, int format) {
-  if ((format & 0xc0) != 0) {
-    refuse_las(file,
-               "this is compressed (LAZ); unpack it first, with 'laszip -i IN.laz -o OUT.las' or "
-               "'pdal translate IN.laz OUT.las'");
-  }
+void check_format(const LasFile& file, const LasHeader& h) {
+  const int format = h.point_format;
   if (format > 10) {
     refuse_las(file, "the header names point format " + std::to_string(format) +
                          "; LAS has formats 0 to 10; the file is damaged");
@@ -67,13 +65,14 @@ void check_lattice(const LasFile& file, const LasHeader& h) {
   }
 }
 
-void check_points(const LasFile& file, const LasHeader& h, std::uint64_t header_bytes) {
-  if (h.first_point < header_bytes || (h.points > 0 && h.first_point > file.bytes())) {
+/// Of compressed points it is known where they begin; how many there are, their chunks say.
+void check_points(const LasFile& file, const LasHeader& h) {
+  if (h.first_point < h.header_bytes || (h.points > 0 && h.first_point > file.bytes())) {
     refuse_las(file, "the points are said to begin at byte " + std::to_string(h.first_point) +
                          " of a file of " + std::to_string(file.bytes()) +
                          "; it is damaged or cut off");
   }
-  if (h.points == 0) {
+  if (h.points == 0 || h.is_compressed) {
     return;
   }
   const std::uint64_t there = (file.bytes() - h.first_point) / h.record_bytes;
@@ -160,8 +159,9 @@ LasHeader read_las_header(const LasFile& file) {
     h.first_extended = las_value<std::uint64_t>(bytes, 235);
     h.extended_records = las_value<std::uint32_t>(bytes, 243);
   }
-  check_format(file, h, bytes[104]);
-  h.point_format = bytes[104];
+  h.is_compressed = (bytes[104] & kCompressedBit) != 0;
+  h.point_format = h.is_compressed ? bytes[104] - kCompressedBit : bytes[104];
+  check_format(file, h);
   for (std::size_t i = 0; i < 3; ++i) {
     h.scale[i] = las_value<double>(bytes, 131 + 8 * i);
     h.offset[i] = las_value<double>(bytes, 155 + 8 * i);
@@ -169,7 +169,7 @@ LasHeader read_las_header(const LasFile& file) {
     h.low[i] = las_value<double>(bytes, 187 + 16 * i);
   }
   check_lattice(file, h);
-  check_points(file, h, header_bytes);
+  check_points(file, h);
   return h;
 }
 

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of a LAS file, and its header. Its records are in read/las_crs.h.
+// The bytes of a LAS file, compressed or not, and its header. Its records are in read/las_records.h.
 #pragma once
 
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
-#include <type_traits>
 
 #include <cpl_vsi.h>
 
 #include "engine/construct/read/las_reader.h"
 
 namespace ptin {
-
-/// Reads a little-endian value that begins at byte `at`. REQUIRES: it lies inside of `bytes`.
-template <class T>
-[[nodiscard]] T las_value(std::span<const unsigned char> bytes, std::size_t at) noexcept {
-  static_assert(std::endian::native == std::endian::little && std::is_trivially_copyable_v<T>);
-  T value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
 
 /// An open LAS file, read at any position.
 class LasFile {

@@ -7,8 +7,11 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_point.h"
+#include "engine/construct/laz/compressed_records.h"
+#include "engine/construct/laz/las_value.h"
 #include "engine/construct/read/las_crs.h"
 #include "engine/construct/read/las_file.h"
+#include "engine/construct/read/las_records.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -18,6 +21,26 @@ constexpr std::uint64_t kBatchBytes = std::uint64_t{1} << 18;
 constexpr std::int64_t kMostMantissa = 1'000'000'000'000'000'000;
 /// A scale with more digits after the point is taken for a binary fraction, not for a decimal.
 constexpr int kMostScaleDecimals = 9;
+constexpr int kOverlapClass = 12;
+
+/// Where compressed points are and how they are compressed, which a record says.
+laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& header) {
+  laz::CompressedPoints points{
+      {file.path(), file.bytes(),
+       [&file](std::uint64_t offset, std::span<unsigned char> into) { file.read(offset, into); }},
+      {},
+      header.first_point,
+      header.points};
+  std::vector<unsigned char> layout;
+  walk_records(file, records_before_points(file, header), [&](const LasRecordHead& record) {
+    if (record.user == laz::kLayoutUser && record.id == laz::kLayoutRecord) {
+      layout.resize(record.bytes);
+      file.read(record.at, layout);
+    }
+  });
+  points.layout = laz::read_layout(layout, header.point_format, header.record_bytes, file.path());
+  return points;
+}
 
 }  // namespace
 
@@ -72,8 +95,7 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
     : path_(std::move(path)), returns_(choice.returns) {
   file_ = std::make_unique<LasFile>(path_);
   header_ = read_las_header(*file_);
-  read_ = begin_ = std::min(part.begin, header_.points);
-  end_ = std::clamp(part.end, begin_, header_.points);
+  open_part(part);
   read_declarations();
   for (const int c : choice.classes) {
     if (c < 0 || c > 255) {
@@ -95,6 +117,32 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
 }
 
 LasReader::~LasReader() = default;
+
+void LasReader::open_part(const PointPart& part) {
+  begin_ = std::min(part.begin, header_.points);
+  end_ = std::clamp(part.end, begin_, header_.points);
+  step_ = header_.record_bytes;
+  if (header_.is_compressed) {
+    compressed_ =
+        std::make_unique<laz::CompressedRecords>(compressed_points(*file_, header_), begin_, end_);
+    begin_ = compressed_->begin();
+    end_ = compressed_->end();
+    step_ = laz::kRecordBytes;
+  }
+  read_ = begin_;
+}
+
+/// Reads the next records; there are some.
+void LasReader::read_records() {
+  if (compressed_) {
+    compressed_->next(buffer_);
+    return;
+  }
+  const std::uint64_t count =
+      std::min(std::max<std::uint64_t>(kBatchBytes / step_, 1), end_ - read_);
+  buffer_.resize(count * step_);
+  file_->read(header_.first_point + read_ * step_, buffer_);
+}
 
 /// Reads what the records declare, and warns of a header that does not fit its file.
 void LasReader::read_declarations() {
@@ -121,6 +169,15 @@ void LasReader::check_counts() {
     warn("las_counts", "its header counts " + std::to_string(header_.points) + " points, and " +
                            std::to_string(header_.legacy_points) +
                            " for programs of older versions; the former are read");
+  }
+  if (compressed_) {
+    if (compressed_->chunks_behind() > 0) {
+      warn("las_counts",
+           "behind the " + std::to_string(header_.points) +
+               " points that its header counts there are more chunks of points, which "
+               "are not read; was it written to its end?");
+    }
+    return;
   }
   const std::uint64_t points_end = header_.first_point + header_.points * header_.record_bytes;
   std::uint64_t end = file_->bytes();
@@ -162,10 +219,22 @@ SourceWarnings LasReader::warnings() const {
   return all;
 }
 
+/// The class. Formats 0 to 5 hold flags and class in one byte, formats 6 to 10 in two.
+int LasReader::class_of(const unsigned char* record) const noexcept {
+  return header_.point_format < 6 ? record[15] & 0x1f : record[16];
+}
+
+/// Counts a point that is not withheld. In formats 0 to 5 overlap is a class, else a flag.
+void LasReader::count_class(const unsigned char* record) {
+  const int cls = class_of(record);
+  ++counted_.points[static_cast<std::size_t>(cls)];
+  counted_.overlap += header_.point_format < 6 ? cls == kOverlapClass : (record[15] & 0x08) != 0;
+}
+
 /// Counts what there is to be warned of in a point that is handed out.
 void LasReader::look_at(const unsigned char* record) {
   const bool is_old = header_.point_format < 6;
-  const int cls = is_old ? record[15] & 0x1f : record[16];
+  const int cls = class_of(record);
   noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old)) ? 1 : 0;
   if (returns_ != ReturnChoice::kAll) {
     const int number = record[14] & (is_old ? 0x07 : 0x0f);
@@ -200,14 +269,15 @@ bool LasReader::is_wanted_return(const unsigned char* record) const {
   return number == 0 || number >= count;
 }
 
-/// Why a point is left out: it is withheld, or of a class or a return that is not kept. Formats 0 to 5
-/// hold flags and class in one byte, formats 6 to 10 in two.
-std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) const {
+/// Why a point is left out: it is withheld, or of a class or a return that is not kept. One that is not
+/// withheld is counted.
+std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) {
   const bool is_old = header_.point_format < 6;
   if ((record[15] & (is_old ? 0x80 : 0x04)) != 0) {
     return LeftOutReason::kWithheld;
   }
-  if (!classes_.test(is_old ? record[15] & 0x1f : record[16])) {
+  count_class(record);
+  if (!classes_.test(static_cast<std::size_t>(class_of(record)))) {
     return LeftOutReason::kClass;
   }
   return is_wanted_return(record) ? std::nullopt : std::optional(LeftOutReason::kReturn);
@@ -216,12 +286,10 @@ std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record
 bool LasReader::next(std::vector<SourcePoint>& batch) {
   batch.clear();
   while (batch.empty() && read_ < end_) {
-    const std::uint64_t count =
-        std::min(std::max<std::uint64_t>(kBatchBytes / header_.record_bytes, 1), end_ - read_);
-    buffer_.resize(count * header_.record_bytes);
-    file_->read(header_.first_point + read_ * header_.record_bytes, buffer_);
+    read_records();
+    const std::uint64_t count = buffer_.size() / step_;
     for (std::uint64_t i = 0; i < count; ++i) {
-      const unsigned char* record = buffer_.data() + i * header_.record_bytes;
+      const unsigned char* record = buffer_.data() + i * step_;
       if (const auto reason = why_unwanted(record)) {
         left_out_.add(*reason);
         continue;

@@ -10,7 +10,7 @@
 namespace ptin {
 
 /// A part of a file that is read by itself: of text the rows that begin in these bytes, of LAS these
-/// records. The parts of a file that do not overlap have no point in common.
+/// records, of LAZ the chunks that begin with one of them. The parts of a file that do not overlap have no point in common.
 struct PointPart {
   std::uint64_t begin = 0, end = std::numeric_limits<std::uint64_t>::max();
   [[nodiscard]] bool is_whole() const noexcept { return *this == PointPart{}; }

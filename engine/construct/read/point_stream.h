@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/construct/grid/left_out.h"
+#include "engine/construct/grid/point_classes.h"
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/read/point_part.h"
@@ -55,6 +56,8 @@ class PointStream {
   /// Points left out so far: by the PointChoice, or by the file itself, which marks them as
   /// withheld or gives them no height.
   [[nodiscard]] virtual LeftOutPoints left_out() const noexcept { return {}; }
+  /// Points so far by class, those of classes that are not wanted too. None from files without classes.
+  [[nodiscard]] virtual PointClasses classes() const { return {}; }
   /// What the rows of a part of a text say of whether the text is one of points, once the part has
   /// been read to its end. None from other streams.
   [[nodiscard]] virtual std::optional<RowsOfPart> rows() const { return std::nullopt; }
@@ -65,6 +68,8 @@ class PointStream {
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   /// The progress at the end, in the unit of done(); 0 where it is unknown.
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;
+  /// True where points are compressed: reading them is work, more than what becomes of them at once.
+  [[nodiscard]] virtual bool is_compressed() const noexcept { return false; }
 };
 
 }  // namespace ptin

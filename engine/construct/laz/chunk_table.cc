@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/construct/laz/chunk_table.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "engine/construct/laz/las_value.h"
+#include "engine/error.h"
+
+namespace ptin::laz {
+
+ChunkTable::ChunkTable(const Source& source, const Layout& layout, std::uint64_t first_point,
+                       std::uint64_t points)
+    : source_(source), layout_(layout), points_(points), at_(first_point), decoder_(source) {
+  if (points == 0) {
+    return;
+  }
+  if (!layout.has_chunks) {
+    chunks_ = 1;
+    chunks_end_ = source.bytes;
+    return;
+  }
+  if (source.bytes < 8 || first_point > source.bytes - 8) {
+    refuse("it has no table of chunks");
+  }
+  at_ = first_point + 8;
+  std::array<unsigned char, 8> place{};
+  source.read(first_point, place);
+  if (las_value<std::int64_t>(place, 0) == -1) {
+    source.read(source.bytes - 8, place);
+  }
+  open_table(las_value<std::uint64_t>(place, 0));
+}
+
+void ChunkTable::refuse(const char* fault) const {
+  throw Error(ErrorCode::invalid_argument,
+              std::string(fault) + "; the file is damaged, cut off, or was not written to its end",
+              source_.path);
+}
+
+void ChunkTable::open_table(std::uint64_t begin) {
+  if (begin < at_ || begin > source_.bytes || source_.bytes - begin < 8) {
+    refuse("its table of chunks does not lie behind its points");
+  }
+  std::array<unsigned char, 8> head{};
+  source_.read(begin, head);
+  if (las_value<std::uint32_t>(head, 0) != 0) {
+    refuse("its table of chunks is of a version that does not exist");
+  }
+  chunks_ = las_value<std::uint32_t>(head, 4);
+  chunks_end_ = begin;
+  if (chunks_ > (chunks_end_ - at_) / layout_.record_bytes) {
+    refuse("its table counts more chunks than there are bytes for");
+  }
+  if (chunks_ == 0) {
+    return;
+  }
+  numbers_ = std::make_unique<IntegerDecoder<32, 2>>();
+  numbers_->begin();
+  try {
+    decoder_.open(begin + 8, source_.bytes);
+  } catch (const DamagedBytes&) {
+    refuse("its table of chunks is cut");
+  }
+}
+
+/// The chunk that comes next, its points and bytes as the table says.
+Chunk ChunkTable::read_entry() {
+  Chunk chunk{points_given_, layout_.chunk_records, at_, chunks_end_};
+  if (!layout_.has_chunks) {
+    chunk.records = points_;
+    return chunk;
+  }
+  try {
+    if (layout_.chunk_records == Layout::kVaries) {
+      records_ = static_cast<std::uint32_t>(
+          numbers_->read(decoder_, static_cast<std::int32_t>(records_), 0));
+      chunk.records = records_;
+    }
+    bytes_ =
+        static_cast<std::uint32_t>(numbers_->read(decoder_, static_cast<std::int32_t>(bytes_), 1));
+  } catch (const DamagedBytes&) {
+    refuse("its table of chunks is damaged");
+  }
+  if (bytes_ > chunks_end_ - at_ || bytes_ < layout_.record_bytes || chunk.records == 0) {
+    refuse("its table of chunks does not fit the bytes of its points");
+  }
+  chunk.end = at_ + bytes_;
+  return chunk;
+}
+
+bool ChunkTable::next(Chunk& chunk) {
+  if (points_given_ >= points_) {
+    return false;
+  }
+  if (chunks_ == 0) {
+    throw Error(ErrorCode::invalid_argument,
+                "the header says " + std::to_string(points_) + " points and its chunks hold " +
+                    std::to_string(points_given_) + "; the file is damaged or cut off",
+                source_.path);
+  }
+  --chunks_;
+  chunk = read_entry();
+  chunk.records = std::min(chunk.records, points_ - points_given_);
+  points_given_ += chunk.records;
+  at_ = chunk.end;
+  return true;
+}
+
+}  // namespace ptin::laz

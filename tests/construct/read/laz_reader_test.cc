@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// LAZ is read as LAS is: the same points, choices, warnings and CRS, and the same file is built.
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/construct/build.h"
+#include "engine/construct/grid/crs.h"
+#include "engine/construct/points/open_points.h"
+#include "engine/construct/points/point_portions.h"
+#include "engine/construct/read/las_reader.h"
+#include "engine/error.h"
+#include "tests/construct/laz/laz_file.h"
+#include "tests/construct/laz/made_las.h"
+#include "tests/construct/made_raster.h"
+#include "tests/construct/memory_file.h"
+#include "tests/support/las_file.h"
+
+namespace ptin {
+namespace {
+
+using oracle::made_las;
+
+/// What a reader gives: points, counts and warnings, in words.
+std::string told_by(const std::string& bytes, const PointChoice& choice = {}) {
+  const MemoryFile file("told.las", bytes);
+  LasReader reader(file.path(), choice);
+  std::string told;
+  std::vector<SourcePoint> batch;
+  while (reader.next(batch)) {
+    for (const SourcePoint& p : batch) {
+      for (const Decimal& d : {p.x, p.y, p.z}) {
+        told += std::to_string(d.mantissa) + "e-" + std::to_string(d.decimals) + " ";
+      }
+    }
+  }
+  told += "left " + std::to_string(reader.left_out().of(LeftOutReason::kWithheld)) + " " +
+          std::to_string(reader.left_out().total()) + " classes " + reader.classes().names() +
+          " overlap " + std::to_string(reader.classes().overlap);
+  const SourceWarnings warnings = reader.warnings();
+  for (const SourceWarning& w : warnings.all()) {
+    told += "\n" + w.kind + " " + std::to_string(w.count);
+  }
+  EXPECT_EQ(reader.done(), reader.total());
+  return told;
+}
+
+LazOptions options_for(int format) {
+  LazOptions options;
+  options.compressor = format < 6 ? 2 : 3;
+  options.chunk_records = 350;
+  return options;
+}
+
+TEST(LazReader, ReadsWhatLasHolds) {
+  for (const int format : {0, 3, 5, 6, 8, 10}) {
+    const std::string las = made_las(format, 1, 1500, 3), laz = laz_of(las, options_for(format));
+    EXPECT_EQ(told_by(laz), told_by(las)) << format;
+    PointChoice choice;
+    choice.classes = {1, 2, 3, 4, 5, 12};
+    choice.returns = ReturnChoice::kLast;
+    EXPECT_EQ(told_by(laz, choice), told_by(las, choice)) << format;
+  }
+}
+
+TEST(LazReader, TakesTheCrsFromRecords) {
+  LasFileMaker las;
+  las.minor = 4;
+  las.format = 6;
+  las.wkt_bit = true;
+  las.points = {{1, 2, 3}, {4, 5, 6}};
+  const std::string wkt = resolve_crs("EPSG:2154", "", "").wkt;
+  las.records = {{2112, wkt}};
+  const MemoryFile file("crs.laz", laz_of(las.bytes(), options_for(6)));
+  EXPECT_EQ(LasReader(file.path(), {}).facts().crs, wkt);
+}
+
+TEST(LazReader, WarnsOfChunksBeyondItsHeader) {
+  std::string laz = laz_of(made_las(1, 0, 800, 3), options_for(1));
+  const std::uint32_t points = 350;
+  std::memcpy(laz.data() + 107, &points, sizeof points);
+  EXPECT_NE(told_by(laz).find("\nlas_counts 0"), std::string::npos);
+}
+
+TEST(LazReader, RefusesWhatIsDamaged) {
+  const std::string good = laz_of(made_las(3, 0, 400, 3), options_for(3));
+  const auto refusal = [](const std::string& bytes) {
+    const MemoryFile file("bad.laz", bytes);
+    try {
+      LasReader reader(file.path(), {});
+      std::vector<SourcePoint> batch;
+      while (reader.next(batch)) continue;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.context(), file.path());
+      return std::string(e.message());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(good), "");
+  for (std::size_t bytes = 4; bytes < good.size(); bytes += 97) {
+    EXPECT_NE(refusal(good.substr(0, bytes)), "") << bytes;
+  }
+  std::string flipped = good;
+  flipped[good.size() / 2] ^= 0x10;
+  EXPECT_NE(refusal(flipped).find("the chunk of the points from "), std::string::npos);
+  std::string without = good;
+  without[235 + 2] = 'L';
+  EXPECT_NE(refusal(without).find("how the points are compressed"), std::string::npos);
+}
+
+TEST(LazReader, IsReadInPortionsOfWholeChunks) {
+  const MemoryFile file("portions.laz", laz_of(made_las(1, 0, 2000, 3), options_for(1)));
+  PortionSizes sizes;
+  sizes.laz_records = 800;
+  const auto portions = cut_into_portions({file.path()}, {}, sizes);
+  ASSERT_EQ(portions.size(), 3U);
+  std::uint64_t points = 0;
+  for (const PointPortion& portion : portions) {
+    const auto stream = open_point_stream(file.path(), {}, {}, {}, portion.part);
+    EXPECT_TRUE(stream->total() % 350 == 0 || portion.part.end > 2000);
+    points += stream->total();
+  }
+  EXPECT_EQ(points, 2000U);
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What is built from points in a file of this name.
+std::string built(const oracle::ScratchFolder& folder, const std::string& bytes, int threads) {
+  const std::string path = folder.file("scan.las");
+  std::ofstream(path, std::ios::binary) << bytes;
+  BuildOptions options;
+  options.classes = {2};
+  BuildResources resources;
+  resources.overwrite = true;
+  resources.threads = threads;
+  std::ignore = build({path}, folder.file("scan.ptin"), options, resources);
+  return content_of(folder.file("scan.ptin"));
+}
+
+TEST(LazReader, MakesTheFileThatLasMakes) {
+  LasFileMaker las;
+  las.minor = 4;
+  las.format = 7;
+  std::mt19937 random(1);
+  for (int i = 0; i < 5000; ++i) {
+    las.points.push_back({static_cast<std::int32_t>(random() % 100000),
+                          static_cast<std::int32_t>(random() % 100000),
+                          static_cast<std::int32_t>(random() % 5000), i % 3 == 0 ? 2 : 5});
+  }
+  const oracle::ScratchFolder folder(oracle::ScratchFolder::Size::kSmall);
+  const std::string expected = built(folder, las.bytes(), 1);
+  for (const int threads : {1, 2}) {
+    EXPECT_EQ(built(folder, laz_of(las.bytes(), options_for(7)), threads), expected);
+  }
+}
+
+TEST(LazReaderOnRealTerrain, ReadsWhatLasHolds) {
+  const std::string shared = PTIN_SHARED_DATA;
+  for (const auto& [laz, las] :
+       {std::pair{"laz/autzen_trim.laz", "autzen_trim.las"},
+        {"laz/ign_lidarhd_0382_6565_crop.laz", "ign_lidarhd_0382_6565_crop.las"},
+        {"laz/extrabytes.laz", "laz/extrabytes.las"},
+        {"laz/point-color-time.las.laz", "laz/point-color-time.las"},
+        {"laz/point10-1.0.laz", "laz/point10-1.0.las"}}) {
+    if (!std::filesystem::exists(shared + "/" + laz)) {
+      GTEST_SKIP() << "needs " << laz;
+    }
+    EXPECT_TRUE(told_by(content_of(shared + "/" + laz)) == told_by(content_of(shared + "/" + las)))
+        << laz;
+  }
+}
+
+}  // namespace
+}  // namespace ptin
