@@ -35,8 +35,8 @@ class ChunkTable {
   ChunkTable(const Source& source, const Layout& layout, std::uint64_t first_point,
              std::uint64_t points);
 
-  /// The next chunk; false behind the last one that has points of the header's number. Points of the
-  /// last chunk beyond that number are none.
+  /// The next chunk; false behind the last one that has points of the header's number. A number
+  /// that ends within a chunk cuts it, which whoever decodes the chunk sees by its bytes.
   /// @throws Error invalid_argument  the table is damaged, or has fewer points than the header says
   [[nodiscard]] bool next(Chunk& chunk);
   /// How many chunks the table has beyond the last one that next() gave.

@@ -42,7 +42,9 @@ void CompressedRecords::find_chunks(std::uint64_t begin, std::uint64_t end) {
     if (chunk.first_record >= end) {
       end_ = chunk.first_record;
       reaches_end = false;
+      continue;
     }
+    ++chunks_;
   }
   chunks_behind_ = reaches_end ? table_->chunks_left() : 0;
   read_ = begin_;

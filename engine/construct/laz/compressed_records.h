@@ -32,10 +32,14 @@ class CompressedRecords {
   /// @throws Error  as ChunkTable
   /// Cost: reads the table of chunks up to `end`.
   CompressedRecords(CompressedPoints points, std::uint64_t begin, std::uint64_t end);
+  CompressedRecords(const CompressedRecords&) = delete;  // Its parts refer to its points.
+  CompressedRecords& operator=(const CompressedRecords&) = delete;
 
   /// The records of the chunks that are read, [begin(), end()).
   [[nodiscard]] std::uint64_t begin() const noexcept { return begin_; }
   [[nodiscard]] std::uint64_t end() const noexcept { return end_; }
+  /// How many chunks these are. The file has bytes for so many, whatever the header says of points.
+  [[nodiscard]] std::uint64_t chunks() const noexcept { return chunks_; }
   /// Chunks behind the last point of the header; 0 where that point is not among those read.
   [[nodiscard]] std::uint64_t chunks_behind() const noexcept { return chunks_behind_; }
 
@@ -52,7 +56,7 @@ class CompressedRecords {
   std::optional<ChunkTable> table_;  ///< Behind the chunk that is being read.
   std::unique_ptr<RecordDecoder> decoder_;
   Chunk chunk_;
-  std::uint64_t begin_ = 0, end_ = 0, chunks_behind_ = 0;
+  std::uint64_t begin_ = 0, end_ = 0, chunks_ = 0, chunks_behind_ = 0;
   std::uint64_t read_ = 0;  ///< The next record.
 };
 

@@ -27,14 +27,18 @@ std::uint64_t size_of_portion(const std::string& path, PointFormat format,
   return format == PointFormat::kText && is_file && !is_packed(path) ? sizes.text_bytes : 0;
 }
 
-void cut(const PointPortion& whole, std::uint64_t total, std::uint64_t size,
+/// Adds the portions of a file, no more than it has parts: a header may lie about its points, and a
+/// portion of each 2^18 of 2^60 would take all memory.
+void cut(const PointPortion& whole, const PointStream& stream, std::uint64_t size,
          std::vector<PointPortion>& portions) {
-  const std::uint64_t parts = size == 0 ? 1 : (total + size - 1) / size;
+  const std::uint64_t total = stream.total();
+  const std::uint64_t parts =
+      size == 0 ? 1 : std::min(total / size + (total % size != 0), stream.most_parts());
   if (parts <= 1) {
     portions.push_back(whole);
     return;
   }
-  const std::uint64_t step = (total + parts - 1) / parts;
+  const std::uint64_t step = total / parts + (total % parts != 0);
   for (std::uint64_t i = 0; i < parts; ++i) {
     PointPortion portion = whole;
     portion.part.begin = i * step;
@@ -111,7 +115,7 @@ std::vector<PointPortion> cut_into_portions(const std::vector<std::string>& inpu
     }
     const auto stream = open_point_stream(path, options.points, options.nodata);
     agreement.add(stream->facts(), path);
-    cut(whole, stream->total(), size_of_portion(path, format, *stream, sizes), portions);
+    cut(whole, *stream, size_of_portion(path, format, *stream, sizes), portions);
   }
   return portions;
 }

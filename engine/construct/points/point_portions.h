@@ -25,7 +25,8 @@ struct PointPortion {
 struct PortionSizes {
   std::uint64_t text_bytes = std::uint64_t{16} << 20;
   std::uint64_t las_records = std::uint64_t{1} << 19;
-  /// Of LAZ, a chunk more or less. A few chunks make a portion, so that all threads end together.
+  /// Records of LAZ; a portion has the chunks that begin among them. A few chunks make a portion, so
+  /// that all threads end together.
   std::uint64_t laz_records = std::uint64_t{1} << 18;
 };
 
@@ -52,8 +53,9 @@ class SourceAgreement {
   DeclaredUnits units_;
 };
 
-/// Cuts all files, in their order. It depends on the files alone: LAS is cut by records, LAZ by chunks, text that is
-/// a file of the system's by bytes; TINs, layers, packed text and pipes are read as a whole.
+/// Cuts all files, in their order. It depends on the files alone: LAS is cut by records, LAZ by
+/// chunks, text that is a file of the system's by bytes; TINs, layers, packed text and pipes are read
+/// as a whole.
 /// Cost: opens each file, but for TINs and what can be read only once.
 /// @throws Error as open_point_stream() and SourceAgreement
 [[nodiscard]] std::vector<PointPortion> cut_into_portions(const std::vector<std::string>& inputs,

@@ -197,6 +197,10 @@ void LasReader::warn(const char* kind, std::string message) {
   warnings_.add({kind, std::move(message), path_});
 }
 
+std::uint64_t LasReader::most_parts() const noexcept {
+  return compressed_ ? compressed_->chunks() : PointStream::most_parts();
+}
+
 SourceWarnings LasReader::warnings() const {
   SourceWarnings all = warnings_;
   const auto add = [&](const char* kind, const char* message, std::uint64_t count) {

@@ -77,6 +77,7 @@ class LasReader final : public PointStream {
   [[nodiscard]] SourceWarnings warnings() const override;
   [[nodiscard]] std::uint64_t done() const noexcept override { return read_ - begin_; }
   [[nodiscard]] std::uint64_t total() const noexcept override { return end_ - begin_; }
+  [[nodiscard]] std::uint64_t most_parts() const noexcept override;
   [[nodiscard]] bool is_compressed() const noexcept override { return header_.is_compressed; }
 
  private:

@@ -68,6 +68,9 @@ class PointStream {
   [[nodiscard]] virtual std::uint64_t done() const noexcept = 0;
   /// The progress at the end, in the unit of done(); 0 where it is unknown.
   [[nodiscard]] virtual std::uint64_t total() const noexcept = 0;
+  /// Into how many parts it can be cut at most: that number is held against the file's bytes, which
+  /// total() may not be.
+  [[nodiscard]] virtual std::uint64_t most_parts() const noexcept { return UINT64_MAX; }
   /// True where points are compressed: reading them is work, more than what becomes of them at once.
   [[nodiscard]] virtual bool is_compressed() const noexcept { return false; }
 };

@@ -132,6 +132,20 @@ TEST(LazReader, IsReadInPortionsOfWholeChunks) {
   EXPECT_EQ(points, 2000U);
 }
 
+/// Portions take memory, and nothing holds the header's number of points against the file's bytes.
+TEST(LazReader, ThatCountsPointsWithoutEndIsCutIntoItsChunks) {
+  LazOptions options;
+  for (const int compressor : {1, 2}) {
+    options.compressor = compressor;
+    options.chunk_records = 0xFFFFFFFE;
+    std::string laz = laz_of(made_las(1, 0, 1000, 3), options);
+    const std::uint32_t points = 0xFFFFFFF0;
+    std::memcpy(laz.data() + 107, &points, sizeof points);
+    const MemoryFile file("endless.laz", laz);
+    EXPECT_EQ(cut_into_portions({file.path()}, {}).size(), 1U) << compressor;
+  }
+}
+
 std::string content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
