@@ -173,8 +173,10 @@ TEST(DividedMemory, HasAPartThatIsKept) {
     return options.http.kept_bytes;
   };
   EXPECT_EQ(kept_of(64, 64), 0U);  // One question takes all.
-  EXPECT_EQ(kept_of(96, 64), 8 * kMib);
-  EXPECT_EQ(kept_of(320, 64), 64 * kMib);
+  EXPECT_EQ(kept_of(80, 64), 0U);  // Beside it a point is answered.
+  EXPECT_EQ(kept_of(100, 64), 0U);
+  EXPECT_EQ(kept_of(112, 64), 8 * kMib);
+  EXPECT_EQ(kept_of(336, 64), 64 * kMib);
   EXPECT_EQ(kept_of(10000, 64), 64 * kMib);
   EXPECT_EQ(kept_of(0, 32), 32 * kMib);
 }

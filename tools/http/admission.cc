@@ -302,6 +302,7 @@ void Admission::work(const std::vector<Lane>& lanes) {
     --shared->running[index_of(lane)];
     if (!shared->is_to_bound(memory)) continue;
     lock.unlock();
+    changed.notify_one();  // Who waits for this one's place need not wait for that.
     shared->bounds();
     lock.lock();
   }

@@ -58,7 +58,9 @@ struct ServeOptions {
 };
 
 /// Divides the memory among the lanes: sweeps and tiles take all of a question's, points a quarter.
-/// Of what is freed as much as one question takes is kept, or a quarter of what is given beyond that.
+/// Of what is freed as much as one question takes is kept, or a quarter of what is given beyond a
+/// question and the points that are answered beside it; so little that every point would have to look
+/// at it is not kept.
 /// Where no memory is given it is so much that every lane can be full, a sixth more for bodies and for
 /// answers that are written, and what is kept.
 inline void divide_memory(ServeOptions& options) noexcept {
@@ -68,8 +70,10 @@ inline void divide_memory(ServeOptions& options) noexcept {
   limits.point_bytes = one / 4;
   limits.kept_bytes = one;
   if (limits.memory_bytes != 0) {
-    const std::uint64_t beyond = limits.memory_bytes - std::min(limits.memory_bytes, one);
-    limits.kept_bytes = std::min(one, beyond / 4);
+    constexpr std::uint64_t kLeast = std::uint64_t{8} << 20;
+    const std::uint64_t needed = one + threads * limits.point_bytes;
+    const std::uint64_t beyond = limits.memory_bytes - std::min(limits.memory_bytes, needed);
+    limits.kept_bytes = beyond / 4 < kLeast ? 0 : std::min(one, beyond / 4);
     return;
   }
   const std::uint64_t lanes = (threads + 1) * one + threads * (one / 4);
