@@ -27,7 +27,8 @@ HttpRanges::HttpRanges(std::string name, ObjectUrl url, const RemoteOptions& opt
   require_curl();
   multi_.reset(curl_multi_init());
   if (!multi_) throw std::bad_alloc();
-  curl_multi_setopt(multi_.get(), CURLMOPT_MAX_TOTAL_CONNECTIONS, long{kMostRequests});
+  // As many are kept as may be under way, which `running_` bounds: transfers that curl itself makes wait
+  // for a connection may wait for ever (its issues 2369, 21396).
   curl_multi_setopt(multi_.get(), CURLMOPT_MAXCONNECTS, long{kMostRequests});
   front_.resize(kFrontBytes);
   Round round;

@@ -16,6 +16,7 @@
 #include "engine/geometry/orient.h"
 #include "engine/query/living/living_page.h"
 #include "storage/page_packer.h"
+#include "storage/pending_split.h"
 #include "storage/record_page.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/widest_entry.h"
@@ -149,6 +150,12 @@ PTIN_FUZZ_TARGET(record_page, data, size) {
     require(records.size() == numbers->records());
     numbers->decode_matching(Everything(), splits);
     require(splits == records.splits);
+    std::vector<PendingSplit> pending;
+    numbers->decode_matching(Everything(), pending);
+    require(std::ranges::equal(pending, splits, [](const PendingSplit& p, const VertexSplit& r) {
+      const PendingSplit of_r = pending_of(r, PageId{0});
+      return std::memcmp(&p, &of_r, sizeof p) == 0;
+    }));
   } catch (const Error& e) {
     require(e.code() == ErrorCode::corruption && records.empty() && records.corners.empty());
   }

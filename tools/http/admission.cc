@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kReaders = 4;
 /// Threads that compute for long give way to those that answer at once: they are nicer by so much.
 constexpr int kNicer = 10;
-/// After so long without a question there is nothing to do.
-constexpr std::chrono::milliseconds kBeforeRest{200};
+/// After so long without a question there is nothing to do: longer than a person, or a page that draws
+/// what came, takes to ask again.
+constexpr std::chrono::seconds kBeforeRest{2};
 
 std::size_t index_of(Lane lane) noexcept { return static_cast<std::size_t>(lane); }
 
