@@ -19,7 +19,9 @@ import subprocess
 import sys
 import tempfile
 import threading
+import types
 import unittest
+from unittest import mock
 
 if len(sys.argv) < 3:
     sys.exit(__doc__)
@@ -108,11 +110,41 @@ class Answers(OnTerrain):
             h = self.t.locate(np.zeros((count, 2)))
             self.assertTrue(np.all(np.isnan(h.z)) and np.all(h.state == ptin.State.OUTSIDE))
 
+    def test_locate_of_missing_positions_is_outside(self):
+        xy = positions(self.t, 50)
+        z = self.t.locate(xy).z
+        missing = np.zeros(50, dtype=bool)
+        missing[[0, 7, 8, 49]] = True
+        gaps = xy.copy()
+        gaps[7, 0] = gaps[0] = gaps[49, 1] = np.nan
+        gaps[8, 1] = np.inf
+        masked = np.ma.MaskedArray(xy, np.column_stack([missing, np.zeros(50, dtype=bool)]))
+        for given in (gaps, masked):
+            h = self.t.locate(given, error=None)
+            np.testing.assert_array_equal(h.z, np.where(missing, np.nan, z))
+            np.testing.assert_array_equal(np.isnan(h.low) & np.isnan(h.high), missing)
+            self.assertTrue(np.all(h.state[missing] == ptin.State.OUTSIDE))
+        for one in ((float("nan"), 3804000), np.full(2, np.nan)):
+            h = self.t.locate(one)
+            self.assertTrue(np.isnan(h.z) and h.state == ptin.State.OUTSIDE)
+        self.assertTrue(np.isnan(self.t.locate(np.full((3, 2), np.nan), vertices=500).z).all())
+
+    def test_locate_of_positions_without_a_place_prints_nothing(self):
+        """GDAL prints by C, which only a process of its own shows."""
+        asked = (
+            f"import sys; sys.path.insert(0, {os.path.dirname(os.path.dirname(ptin.__file__))!r}); import ptin\n"
+            "h = ptin.open('dem.ptin').locate([(1e9, 1e9), (-118.304, 34.37), (0, 500)] * 50_000, crs=4326)\n"
+            "print(*h.state[:3], *h.state[-3:])\n"
+        )
+        done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True)
+        self.assertEqual((done.stdout, done.stderr), ("2 0 2 2 0 2\n", ""))
+
     def test_locate_takes_positions_of_another_crs(self):
         z = self.t.locate((380000.0, 3804000.0)).z
         there = (-118.304, 34.37)
         by_code, by_number = self.t.locate(there, crs="EPSG:4326"), self.t.locate([there], crs=4326)
         self.assertEqual(by_code.z, by_number.z[0])
+        self.assertEqual(self.t.locate(there, crs=np.int64(4326)).z, by_code.z)
         self.assertEqual(by_code.state, ptin.State.SURFACE)
         self.assertEqual(self.t.locate((380000.0, 3804000.0), crs="EPSG:32611").z, z)
         with self.assertRaisesRegex(ptin.InvalidArgument, "no CRS"):
@@ -339,7 +371,7 @@ class Errors(OnTerrain):
             ptin.open("nothing.ptin")
         self.assertIsInstance(raised.exception, ptin.NotFound)
         self.assertEqual((raised.exception.code, raised.exception.context), ("not_found", "nothing.ptin"))
-        for wrong in (lambda: self.t.locate((0, float("nan"))), lambda: self.t.locate((0, 0), error=-1)):
+        for wrong in (lambda: self.t.highest(window=(0, 0, 1)), lambda: self.t.locate((0, 0), error=-1)):
             with self.assertRaises(ValueError) as raised:
                 wrong()
             self.assertIsInstance(raised.exception, ptin.InvalidArgument)
@@ -366,6 +398,23 @@ class Errors(OnTerrain):
         for wrong in ("text", [["a", "b"]], None):
             with self.assertRaises((TypeError, ValueError)):
                 self.t.locate(wrong)
+
+    def test_numbers_of_numpy_are_numbers(self):
+        for memory in (0.5 * (1 << 30), np.int64(1 << 29), np.float32(1 << 29), "0.5G"):
+            self.assertEqual(ptin.open("dem.ptin", memory=memory)._memory, 1 << 29)
+        for wrong in (-1, float("nan"), float("inf"), [1], "much"):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "no size of memory"):
+                ptin.open("dem.ptin", memory=wrong)
+
+    def test_a_window_is_four_numbers(self):
+        for wrong in ((1, 2, 3), 5, np.zeros((2, 2))):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "four numbers"):
+                self.t.refine(window=wrong)
+
+    def test_isolines_need_no_temporary_folder(self):
+        count = len(self.t.isolines(interval=100))
+        with mock.patch.dict(os.environ, TMPDIR="/nowhere/at/all"):
+            self.assertEqual(len(self.t.isolines(interval=100)), count)
 
     def test_a_closed_terrain_answers_no_more(self):
         with ptin.open("dem.ptin") as t:
@@ -399,6 +448,24 @@ class Elsewhere(OnTerrain):
         with self.assertRaises(ptin.NotFound):
             ptin.open(f"{self.host}/missing/dem.ptin")
 
+    def test_a_fork_opens_it_anew(self):
+        xy = positions(self.t, 200)
+        expected = self.t.locate(xy).z
+        with ptin.open(f"{self.host}/plain/dem.ptin") as there:
+            there.locate(xy[0])
+            of_parent = there._opened
+            child = os.fork()
+            if child == 0:
+                signal.alarm(60)
+                is_right = False
+                try:
+                    is_right = np.array_equal(there.locate(xy).z, expected) and there._opened is not of_parent
+                finally:
+                    os._exit(0 if is_right else 1)
+            np.testing.assert_array_equal(there.locate(xy).z, expected)
+            self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+            self.assertIs(there._opened, of_parent)
+
     def test_ctrl_c_ends_waiting_for_a_server(self):
         timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
@@ -407,6 +474,40 @@ class Elsewhere(OnTerrain):
         there = ptin.open(f"{self.host}/plain/dem.ptin")
         there._opened.stop_waiting()  # as a signal does, for good; what is asked next opens it anew
         self.assertEqual(there.locate((380000, 3804000)).z, self.t.locate((380000, 3804000)).z)
+
+
+# What a process does that ends while daemon threads are in questions, one of them in each kind of waiting.
+DAEMONS = """
+import sys, threading
+sys.path.insert(0, sys.argv[1])
+import numpy as np
+import ptin
+
+t = ptin.open("dem.ptin")
+one = (378000.0, 3804000.0)
+many = np.random.default_rng(1).random((400_000, 2)) * 3000 + one
+rounds = [
+    lambda: t.locate(one),
+    lambda: t.locate(many),
+    lambda: t.refine(error=1),
+    lambda: next(t.parts(error=5, memory="3M")),
+    lambda: ptin.build(sys.argv[2], "daemon.ptin", progress=lambda *told: None, overwrite=True, discard=True),
+]
+
+def repeat(work, begun):
+    while True:
+        try:
+            work()
+        except Exception as error:  # as services do; the end of Python is none
+            print(error, file=sys.stderr)
+        begun.set()
+
+events = [threading.Event() for work in rounds]
+for work, begun in zip(rounds, events):
+    threading.Thread(target=repeat, args=(work, begun), daemon=True).start()
+for begun in events:
+    begun.wait()
+"""
 
 
 class Process(OnTerrain):
@@ -422,21 +523,36 @@ class Process(OnTerrain):
             os.chdir("..")
 
     def test_other_threads_run_while_a_question_is_answered(self):
-        asked, answered = threading.Event(), threading.Event()
-        counted = [0]
+        begun, asked, ran = threading.Event(), threading.Lock(), threading.Event()
 
-        def count():
-            asked.wait()
-            while not answered.is_set():
-                counted[0] += 1
+        def run():
+            begun.set()
+            with asked:
+                ran.set()
 
-        counter = threading.Thread(target=count)
-        counter.start()
-        asked.set()
-        self.t.locate(positions(self.t, 200_000))
-        answered.set()
-        counter.join()
-        self.assertGreater(counted[0], 1000)
+        xy = positions(self.t, 200_000)
+        before = sys.getswitchinterval()
+        sys.setswitchinterval(1000)  # a thread runs until it waits, so the other one waits when it has begun
+        other = threading.Thread(target=run)
+        asked.acquire()
+        try:
+            other.start()
+            begun.wait()
+            asked.release()
+            self.assertFalse(ran.is_set())
+            for _ in range(100):
+                self.t.locate(xy)
+                if ran.is_set():
+                    break
+            self.assertTrue(ran.is_set())
+        finally:
+            sys.setswitchinterval(before)
+            other.join()
+
+    def test_a_process_ends_while_daemon_threads_ask(self):
+        package = os.path.dirname(os.path.dirname(ptin.__file__))
+        done = subprocess.run([sys.executable, "-c", DAEMONS, package, RASTER], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def test_threads_ask_one_terrain(self):
         xy = positions(self.t, 20_000)
@@ -545,6 +661,14 @@ class Build(unittest.TestCase):
             ptin.build(RASTER, "raised.ptin", progress=progress)
         self.assertFalse(os.path.exists("raised.ptin"))
 
+    def test_files_come_from_an_iterator(self):
+        self.assertEqual(ptin.build(iter([RASTER]), "iterator.ptin").samples, 66049)
+        points = os.path.join(ROOT, "tests/data/ground_points.csv")
+        with self.assertRaisesRegex(ptin.NotFound, "nothing.geojson"):
+            ptin.build(points, "never.ptin", breaklines=iter(["nothing.geojson"]))
+        with self.assertRaisesRegex(ptin.InvalidArgument, "one array"):
+            ptin.build(iter([np.zeros((3, 3))]), "never.ptin")
+
     def test_a_bar_for_each_stage(self):
         try:
             importlib.import_module("tqdm")
@@ -599,8 +723,12 @@ class Build(unittest.TestCase):
             with self.assertRaisesRegex(ptin.InvalidArgument, "pixel_size"):
                 of_array.raster()
             self.assertEqual(of_array.raster(size=(30, 20)).array.shape, (20, 30))
-        points[:5, 2] = np.nan
-        self.assertEqual(ptin.build(points, "array.ptin", overwrite=True).left_out_points, 5)
+        masked = np.ma.MaskedArray(points.copy(), False)
+        for column in range(3):
+            points[column, column] = np.nan
+            masked[column, column] = np.ma.masked
+        for given, options in ((points, {}), (masked, {}), (masked, {"nodata": -9999})):
+            self.assertEqual(ptin.build(given, "array.ptin", overwrite=True, **options).left_out_points, 3)
 
     def test_equal_arrays_make_equal_files(self):
         array, transform = source()
@@ -628,6 +756,10 @@ class Build(unittest.TestCase):
 
 
 class Documents(unittest.TestCase):
+    def test_all_names_are_listed(self):
+        there = {name for name, value in vars(ptin).items() if name[0] != "_" and not isinstance(value, types.ModuleType)}
+        self.assertEqual(sorted(there), sorted(ptin.__all__))
+
     def test_examples_of_docstrings(self):
         failed = 0
         for name in ("ptin", "ptin.terrain", "ptin.results", "ptin.construct"):
@@ -640,8 +772,6 @@ class Documents(unittest.TestCase):
     def test_the_page(self):
         """Every block of the page runs, in its order. Where Matplotlib is not installed nothing is drawn; PTIN_PICTURES
         names a folder for what is."""
-        from unittest import mock
-
         try:
             import matplotlib
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/python/array_source.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -40,8 +41,11 @@ class PointLayer final : public OGRLayer {
     if (next_ == points_) return nullptr;
     const double* const at = numbers_ + static_cast<std::size_t>(next_) * kNumbersOfPoint;
     auto feature = std::make_unique<OGRFeature>(definition_);
-    // Without a height it has no geometry, and a build counts it among those that it leaves out.
-    if (!std::isnan(at[2])) feature->SetGeometryDirectly(new OGRPoint(at[0], at[1], at[2]));
+    // Without a place or a height it has no geometry, and a build counts it among those that it
+    // leaves out.
+    if (std::none_of(at, at + kNumbersOfPoint, [](double n) { return std::isnan(n); })) {
+      feature->SetGeometryDirectly(new OGRPoint(at[0], at[1], at[2]));
+    }
     feature->SetFID(next_++);
     return feature.release();
   }

@@ -25,7 +25,7 @@ class ArraySource {
  public:
   /// A raster.
   explicit ArraySource(const GridArray& grid);
-  /// Points: x, y, height of each, one after the other. One whose height is NaN has none.
+  /// Points: x, y, height of each, one after the other. One of which a number is NaN is left out.
   ArraySource(const double* numbers, std::size_t points);
   ~ArraySource();
   ArraySource(const ArraySource&) = delete;

@@ -108,6 +108,7 @@ template <typename Result>
 
 // Each adds its functions and classes to the module.
 void add_errors(py::module_& module);
+void add_questions(py::module_& module);
 void add_terrain(py::module_& module);
 void add_heights(py::module_& module);
 void add_meshes(py::module_& module);

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Heights at points and along a line, and the highest point.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <vector>
 
+#include <cpl_error.h>
 #include <ogr_spatialref.h>
 
 #include "engine/crs/ground.h"
 #include "engine/error.h"
+#include "engine/stop.h"
 #include "tools/python/binding.h"
 
 namespace ptin::python {
@@ -18,11 +23,15 @@ namespace {
 /// Fewer points are located in less time than a thread takes to start.
 constexpr std::size_t kFewPoints = 1000;
 
-/// Positions of another CRS in the terrain's; x is to the east in both.
-/// @throws Error invalid_argument  GDAL does not know the CRS; a position has no place in the
-///                                 terrain's; the terrain's CRS is unknown
-std::vector<MapPoint> on_terrain(std::span<const MapPoint> points, const std::string& crs,
-                                 const OpenTerrain& t) {
+/// Takes positions of another CRS to the terrain's; x is to the east in both. One that has no place
+/// there becomes NaN.
+/// @throws Error invalid_argument  GDAL does not know the CRS; the terrain's CRS is unknown
+/// @throws Error cancelled         a stop was requested
+void take_to_terrain(std::span<MapPoint> points, const std::string& crs, const OpenTerrain& t,
+                     const std::stop_token& stop) {
+  constexpr std::size_t kBetweenLooks = 100'000;
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
   OGRSpatialReference from, to;
   from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -36,18 +45,22 @@ std::vector<MapPoint> on_terrain(std::span<const MapPoint> points, const std::st
       OGRCreateCoordinateTransformation(&from, &to));
   if (!change) refuse("no way is known from \"" + crs + "\" to the CRS of the terrain", "crs");
   std::vector<double> x, y;
-  for (const MapPoint& p : points) x.push_back(p.x), y.push_back(p.y);
-  std::vector<int> is_done(points.size());
-  change->Transform(static_cast<int>(points.size()), x.data(), y.data(), nullptr, is_done.data());
-  std::vector<MapPoint> there;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_done[i] == 0) {
-      refuse("position " + std::to_string(i) + " of the question has no place in that CRS", "xy");
+  std::vector<int> is_done;
+  for (std::size_t first = 0; first < points.size(); first += kBetweenLooks) {
+    stop_if_asked(stop, "the question");
+    const auto some = points.subspan(first, std::min(kBetweenLooks, points.size() - first));
+    x.clear(), y.clear();
+    for (const MapPoint& p : some) x.push_back(p.x), y.push_back(p.y);
+    is_done.assign(some.size(), 0);
+    change->Transform(static_cast<int>(some.size()), x.data(), y.data(), nullptr, is_done.data());
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      some[i] = is_done[i] != 0 ? MapPoint{x[i], y[i]} : MapPoint{kNowhere, kNowhere};
     }
-    there.push_back({x[i], y[i]});
   }
-  return there;
 }
+
+/// False of a position that has NaN, as one that is missing has, or infinity.
+bool is_place(const MapPoint& p) noexcept { return std::isfinite(p.x) && std::isfinite(p.y); }
 
 /// What locate() has found at points, as arrays that NumPy owns.
 struct HeightArrays {
@@ -67,13 +80,11 @@ struct HeightPlaces {
         low(arrays.low.mutable_data()),
         high(arrays.high.mutable_data()),
         state(arrays.state.mutable_data()) {}
-  void take(std::span<const LocatedPoint> points) const noexcept {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      height[i] = points[i].height;
-      low[i] = points[i].height_min;
-      high[i] = points[i].height_max;
-      state[i] = static_cast<std::uint8_t>(points[i].state);
-    }
+  void put(std::size_t i, const LocatedPoint& point) const noexcept {
+    height[i] = point.height;
+    low[i] = point.height_min;
+    high[i] = point.height_max;
+    state[i] = static_cast<std::uint8_t>(point.state);
   }
   double *height, *low, *high;
   std::uint8_t* state;
@@ -97,12 +108,29 @@ std::optional<MapPoint> single_position(const py::handle& xy) {
 py::tuple locate_one(const OpenTerrain& t, MapPoint at, const LocateRequest& request) {
   LocateResult found;
   {
+    const Question question;
     const py::gil_scoped_release release;
     found = t.terrain.locate({&at, 1}, request);
   }
   const LocatedPoint& p = found.points.front();
   return py::make_tuple(p.height, p.height_min, p.height_max, static_cast<int>(p.state),
                         found.certified_error, found.certified_deviation, found.exact);
+}
+
+/// Heights at points, put where they belong. Of what is no place nothing is asked: it lies outside.
+LocateResult locate_all(const OpenTerrain& t, std::span<const MapPoint> points,
+                        const LocateRequest& request, const HeightPlaces& places) {
+  std::vector<MapPoint> asked;
+  const bool are_all = std::all_of(points.begin(), points.end(), is_place);
+  if (!are_all) std::copy_if(points.begin(), points.end(), std::back_inserter(asked), is_place);
+  LocateResult found =
+      t.terrain.locate(are_all ? points : std::span<const MapPoint>(asked), request);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    places.put(i, is_place(points[i]) ? found.points[next++] : LocatedPoint{});
+  }
+  found.points = {};
+  return found;
 }
 
 py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
@@ -112,24 +140,26 @@ py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
   asked.put(request, stop.get_token());
   const bool may_wait = t.is_remote || asked.vertices;
   const std::optional<MapPoint> single = single_position(xy);
-  if (single && !crs && !may_wait) return locate_one(t, *single, request);
+  const bool is_quick = !crs && !may_wait;
+  if (single && is_quick && is_place(*single)) return locate_one(t, *single, request);
 
   const Numbers numbers(xy);
-  std::span<const MapPoint> points = points_of(numbers);
+  const std::span<const MapPoint> points = points_of(numbers);
   const bool is_scalar = numbers.ndim() == 1;
-  if (is_scalar && !crs && !may_wait) return locate_one(t, points.front(), request);
+  if (is_scalar && is_quick && is_place(points.front())) {
+    return locate_one(t, points.front(), request);
+  }
   HeightArrays arrays(points.size());
   const HeightPlaces places(arrays);
   const auto work = [&] {
-    std::vector<MapPoint> there;
-    if (crs) points = there = on_terrain(points, *crs, t);
-    LocateResult found = t.terrain.locate(points, request);
-    places.take(found.points);
-    found.points = {};
-    return found;
+    if (!crs) return locate_all(t, points, request, places);
+    std::vector<MapPoint> there(points.begin(), points.end());
+    take_to_terrain(there, *crs, t, stop.get_token());
+    return locate_all(t, there, request, places);
   };
   LocateResult found;
   if (points.size() < kFewPoints && !may_wait) {
+    const Question question;
     const py::gil_scoped_release release;
     found = work();
   } else {

@@ -3,6 +3,7 @@
 // Isolines, as GeoArrow lays lines out: coordinates, and where each line begins.
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 #include <vector>
 
 #include "tools/python/binding.h"
@@ -45,7 +46,8 @@ py::tuple isolines(const OpenTerrain& t, const std::vector<double>& levels,
   asked.put(request, stop.get_token());
   request.levels = interval ? levels_every(*interval, base, t.terrain.store().facts()) : levels;
   request.region = region_of(region);
-  request.temporary_folder = std::filesystem::temp_directory_path().string();
+  std::error_code missing;  // without a folder no file is made: points are to fit into memory
+  request.temporary_folder = std::filesystem::temp_directory_path(missing).string();
   std::optional<LineArrays> arrays;
   const py::tuple certificate = certificate_of(answer(t, stop, [&] {
     const Isolines lines = t.terrain.isolines(request);

@@ -108,6 +108,11 @@ class PartIterator {
     walker_ = std::jthread([this] { walk(); });
   }
   ~PartIterator() {
+    if (is_ended_by_python()) {  // the GIL, once let go, could not be had again
+      end();
+      return;
+    }
+    const Question question;
     const py::gil_scoped_release release;
     end();
   }
@@ -116,9 +121,10 @@ class PartIterator {
 
   /// None after the last part.
   py::object next() {
+    Question question(stop_);
     const std::stop_callback on_stop(stop_.get_token(), [this] { terrain_->stop_waiting(); });
     std::unique_lock lock(mutex_);
-    if (wait_for_signals_too(lock, changed_, stop_, [this] { return is_ready_ || is_done_; })) {
+    if (question.wait(lock, changed_, [this] { return is_ready_ || is_done_; })) {
       raise_what_is_set();
     }
     if (is_ready_) {
@@ -128,7 +134,10 @@ class PartIterator {
       lock.unlock();
       return mesh.taken();
     }
-    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    if (failure_) {
+      exit_if_ended_by_python();
+      std::rethrow_exception(std::exchange(failure_, nullptr));
+    }
     return py::none();
   }
   [[nodiscard]] py::tuple certificate() const {

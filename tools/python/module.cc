@@ -13,6 +13,7 @@ PYBIND11_MODULE(_ptin, module) {
         return Asked{error, vertices, memory};
       }));
   add_errors(module);
+  add_questions(module);
   add_terrain(module);
   add_heights(module);
   add_meshes(module);

@@ -102,6 +102,8 @@ void add_terrain(py::module_& module) {
         return border_moved_at_most(t.terrain.store(), error);
       });
   module.def("open", open);
+  // The child of a fork holds what its parent uses on: to close it would end the parent's connections.
+  module.def("never_close", [](py::object terrain) { terrain.release(); });
 }
 
 }  // namespace ptin::python

@@ -43,4 +43,33 @@ from .results import (
 from .terrain import Terrain, open
 from ._ptin import __version__
 
-__all__ = [name for name in dir() if not name.startswith("_") and name not in ("construct", "errors", "results", "terrain")]
+__all__ = [
+    "Areas",
+    "Bounded",
+    "Cancelled",
+    "Clearance",
+    "Corruption",
+    "Error",
+    "Heights",
+    "Highest",
+    "InvalidArgument",
+    "IoError",
+    "Isolines",
+    "LinePlace",
+    "Mesh",
+    "NotFound",
+    "Place",
+    "Profile",
+    "Raster",
+    "Report",
+    "ResourceExhausted",
+    "Sight",
+    "State",
+    "Terrain",
+    "Transform",
+    "UnsupportedVersion",
+    "Viewshed",
+    "Volume",
+    "build",
+    "open",
+]

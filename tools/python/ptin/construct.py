@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from typing import Any, Callable, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -29,7 +29,7 @@ _GDAL_TYPES = {
 
 
 def build(
-    inputs: Union[Path, npt.NDArray[Any], Sequence[Path]],
+    inputs: Union[Path, npt.NDArray[Any], Iterable[Path]],
     output: Path,
     *,
     transform: Optional[Sequence[float]] = None,
@@ -48,7 +48,7 @@ def build(
         inputs: A raster, several of one grid, files of points, or a TIN: what ``ptin build`` takes. Or an array, of
             which nothing is copied where it is contiguous: with ``transform`` a grid, (rows, columns) of integers up to
             32 bits or floats, row 0 where the transform says; else points, (N, 3) float64: x, y and height. NaN, and
-            what is masked, is void.
+            what is masked, is void; a point with one of them is left out.
         output: Path of the ``.ptin`` file.
         transform: Of a grid: the six numbers of :class:`Transform`; rasterio's ``dataset.transform`` too.
         progress: True: a bar of tqdm for each stage. Or a function of (stage, done, total), which is called at most ten
@@ -101,6 +101,7 @@ build.__doc__ = (build.__doc__ or "").replace(
 def _names(inputs: Any) -> list[str]:
     if isinstance(inputs, (str, os.PathLike)):
         return [os.fspath(inputs)]
+    inputs = list(inputs)  # which an iterator gives once
     if any(isinstance(one, np.ndarray) for one in inputs):
         raise InvalidArgument("a build has one array, or files; join arrays first")
     return [os.fspath(one) for one in inputs]
@@ -108,15 +109,17 @@ def _names(inputs: Any) -> list[str]:
 
 def _source(array: npt.NDArray[Any], transform: Optional[Sequence[float]], options: dict[str, Any]) -> Any:
     """An array as a source that the engine can read."""
+    if transform is None:
+        if array.ndim != 2 or array.shape[1] != 3:
+            raise InvalidArgument("points are an array of shape (N, 3); a grid needs a transform")
+        if isinstance(array, np.ma.MaskedArray):
+            array = array.astype(np.float64).filled(np.nan)
+        return _ptin.source_of_points(np.ascontiguousarray(array, dtype=np.float64))
     if isinstance(array, np.ma.MaskedArray):
         nodata = options.get("nodata")
         if nodata is None and array.dtype.kind != "f":
             raise InvalidArgument("a masked array of integers needs nodata, a value that none of its heights has")
         array = array.filled(np.nan if nodata is None else nodata)
-    if transform is None:
-        if array.ndim != 2 or array.shape[1] != 3:
-            raise InvalidArgument("points are an array of shape (N, 3); a grid needs a transform")
-        return _ptin.source_of_points(np.ascontiguousarray(array, dtype=np.float64))
     if array.ndim != 2:
         raise InvalidArgument("a grid is an array of rows and columns")
     if array.dtype.name not in _GDAL_TYPES:

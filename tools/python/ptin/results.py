@@ -351,7 +351,7 @@ class Report:
     Attributes:
         samples: With a height; of points and TINs, distinct positions.
         void_samples: Of rasters: without a height.
-        left_out_points: Points that were left out, for want of a height or as the options say.
+        left_out_points: Points that were left out, for want of a number or as the options say.
         merged_points: Points less the positions that they fell on.
         largest_shift: How far snapping moved a point in plan, CRS units, and merging in height.
         height_rounding: How far storing moved a height, at most.

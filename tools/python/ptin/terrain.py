@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import numbers
 import os
 import re
 from typing import Any, Iterable, Iterator, Optional, Sequence, Union, overload
@@ -31,7 +32,7 @@ from .results import (
 )
 
 Path = Union[str, "os.PathLike[str]"]
-Memory = Union[int, str, None]
+Memory = Union[float, str, None]
 Window = Optional[Sequence[float]]
 
 _UNITS_OF_MEMORY = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
@@ -43,8 +44,12 @@ def _bytes(memory: Memory) -> Optional[int]:
     >>> _bytes("512M")
     536870912
     """
-    if memory is None or isinstance(memory, int):
-        return memory
+    if memory is None:
+        return None
+    if not isinstance(memory, str):
+        if not isinstance(memory, numbers.Real) or not 0 <= memory < 2**63:
+            raise InvalidArgument(f'{memory} is no size of memory; expected bytes, or a text as "512M" or "2G"')
+        return int(memory)
     found = re.fullmatch(r"(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?", memory.strip(), re.IGNORECASE)
     if not found:
         raise InvalidArgument(f'"{memory}" is no size of memory; expected bytes, or a text as "512M" or "2G"')
@@ -55,7 +60,7 @@ def _crs(crs: Any) -> Optional[str]:
     """A CRS as text: of a text itself, of what pyproj, rasterio and geopandas have its WKT, of a number EPSG's."""
     if crs is None or isinstance(crs, str):
         return crs
-    return f"EPSG:{crs}" if isinstance(crs, int) else str(crs.to_wkt())
+    return f"EPSG:{int(crs)}" if isinstance(crs, numbers.Integral) else str(crs.to_wkt())
 
 
 def _rings(polygon: Any) -> list[npt.NDArray[np.float64]]:
@@ -71,9 +76,16 @@ def _rings(polygon: Any) -> list[npt.NDArray[np.float64]]:
     return [np.asarray(ring, dtype=float) for ring in shape]
 
 
+def _window(window: Sequence[float]) -> tuple[float, ...]:
+    """The four numbers of a window."""
+    if np.shape(window) != (4,):
+        raise InvalidArgument("a window is four numbers: xmin, ymin, xmax, ymax")
+    return tuple(map(float, window))
+
+
 def _region(window: Window, polygon: Any) -> Any:
     if polygon is None:
-        return None if window is None else tuple(map(float, window))
+        return None if window is None else _window(window)
     if window is not None:
         raise InvalidArgument("a region is a window or a polygon; leave one out")
     return _rings(polygon)
@@ -112,20 +124,23 @@ def open(path: Path, memory: Memory = None) -> Terrain:
 
 
 class Terrain:
-    """A terrain that answers questions. Made by :func:`open`; a context manager; pickled by its path.
+    """A terrain that answers questions. Made by :func:`open`; a context manager; pickled by its path, and opened anew
+    in the child of a fork.
 
     Of each question ``error`` is the certified error allowed, in the height's unit, 0 too; None: the full TIN. Instead
     of an error ``vertices=N`` asks for the TIN of the terrain's N most important vertices. ``window`` is ``(xmin, ymin,
     xmax, ymax)`` in map units; ``polygon`` a shapely geometry, anything with ``__geo_interface__``, an (N, 2) array or
     a list of those, the rings.
 
-    Questions release the GIL and may be asked by several threads at once. Ctrl-C ends each, as a rule within a tenth
-    of a second. Each raises InvalidArgument, ResourceExhausted, Corruption or IoError.
+    Questions release the GIL and may be asked by several threads at once. Ctrl-C ends that of the main thread, as a
+    rule within a tenth of a second; the end of Python ends those of daemon threads, by SystemExit. Each raises
+    InvalidArgument, ResourceExhausted, Corruption or IoError.
     """
 
     def __init__(self, path: Path, memory: Memory = None) -> None:
         name = os.fspath(path)
         self._opened: Any = _ptin.open(name)
+        self._pid = os.getpid()
         self._name = name if "://" in name or name.startswith("/vsi") else os.path.abspath(name)
         self._memory = _bytes(memory)
 
@@ -133,6 +148,9 @@ class Terrain:
     def _terrain(self) -> Any:
         if self._opened is None:
             raise ValueError("this terrain is closed")
+        if self._pid != os.getpid():  # a fork: connections and locks are the parent's
+            _ptin.never_close(self._opened)
+            self._opened, self._pid = _ptin.open(self._name), os.getpid()
         if self._opened.is_stopped:  # by Ctrl-C, while it waited for a server
             self._opened = _ptin.open(self._name)
         return self._opened
@@ -142,6 +160,8 @@ class Terrain:
 
     def close(self) -> None:
         """Closes the file; questions that are being answered end as if it were open."""
+        if self._opened is not None and self._pid != os.getpid():
+            _ptin.never_close(self._opened)
         self._opened = None
 
     def __enter__(self) -> Terrain:
@@ -252,7 +272,8 @@ class Terrain:
         """Heights at points: exact, or with the interval that is certain.
 
         Args:
-            xy: (N, 2) map units, taken without a copy where it is float64 and contiguous; or one (x, y).
+            xy: (N, 2) map units, taken without a copy where it is float64 and contiguous; or one (x, y). What is NaN,
+                infinite or masked, or has no place in the terrain's CRS, is OUTSIDE: its height is NaN.
             crs: The CRS of ``xy``, x to the east, where it is not the terrain's: text, an EPSG number, or what has
                 ``to_wkt()``.
 
@@ -262,6 +283,8 @@ class Terrain:
         >>> bool(h.low[0] <= 947.5 <= h.high[0]), h.state.tolist()
         (True, [0, 2])
         """
+        if isinstance(xy, np.ma.MaskedArray):
+            xy = xy.astype(np.float64).filled(np.nan)
         asked = _ptin.Asked(error, vertices, self._memory if memory is None else _bytes(memory))
         return Heights(*_ptin.locate(self._terrain, xy, asked, None if crs is None else _crs(crs)))
 
