@@ -158,7 +158,7 @@ TEST(Resume, SortsPointsAndTrianglesAgainThatAreDamagedOrGone) {
       cases.emplace_back(name, how);
     }
   }
-  for (const auto& [name, how] : test::some_of(cases)) {
+  for (const auto& [name, how] : test::some_of(cases, 4)) {
     SCOPED_TRACE(name + " " + std::to_string(static_cast<int>(how)));
     const InterruptibleBuild interrupted(name.starts_with("tin") ? SourceKind::kTin
                                                                  : SourceKind::kPoints);

@@ -375,6 +375,7 @@ TEST(Raster, OfAnySizeIsHandedOverInBlocks) {
     request.pixels.width = std::int64_t{1} << 30;
     request.pixels.height = height;
     request.states = height != std::int64_t{1} << 30;
+    request.block_width = request.block_height = 64;
     std::stop_source stop;
     request.limits.stop = stop.get_token();
     const auto first = [&](const RasterBlock& block) {

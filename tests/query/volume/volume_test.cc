@@ -223,8 +223,7 @@ MapPoint at(const OpenedTerrain& terrain, double x, double y) {
 TEST(Volume, IsTheSameForAnyMemoryTilesAndThreads) {
   const Terrain& coast = reference::built_terrain("coast_257.tif");
   const Terrain& rough = reference::built_terrain("coast_257.tif", 2.0);
-  for (const OpenedTerrain* other :
-       {static_cast<const OpenedTerrain*>(nullptr), static_cast<const OpenedTerrain*>(&rough)}) {
+  for (const OpenedTerrain* other : test::some_of<const OpenedTerrain*>({nullptr, &rough})) {
     VolumeRequest request = built_request(coast);
     request.other = other;
     request.detail.tolerance = 1.0;
