@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Answers of the engine, as its WebAssembly and the service give them. Nothing here is computed by the page.
-
-export interface MapPosition {
-  x: number;
-  y: number;
-}
+import type { MapPosition } from 'ptin-decoder';
 
 export type PointState = 'surface' | 'void' | 'outside';
 

@@ -2,8 +2,8 @@
 //
 // The mesh as the GPU wants it: positions and normals around the local origin, corners of the surface's triangles. Void
 // triangles are left out, so voids stay open.
-import { type Frame, heightOf } from './frame';
-import { type MeshView, none, triangleWords, vertexWords } from './mesh';
+import { heightOf, type MeshView, none, surfaceCorners, triangleWords, vertexWords } from 'ptin-decoder';
+import type { Frame } from './frame';
 
 export interface DrawnMesh {
   /** Three a vertex, metres in the scene. */
@@ -35,20 +35,6 @@ function drawnPositions(mesh: MeshView, frame: Frame): Float32Array {
     positions[to + 2] = mesh.hasHeight[v] !== 0 ? frame.sceneZ(heightOf(facts, vertices[from + 2])) : 0;
   }
   return positions;
-}
-
-function surfaceCorners(mesh: MeshView): Uint32Array {
-  const { triangles, classes, triangleCount } = mesh;
-  let surface = 0;
-  for (let t = 0; t < triangleCount; ++t) surface += classes[t] === 0 ? 1 : 0;
-  const corners = new Uint32Array(3 * surface);
-  for (let t = 0, from = 0, to = 0; t < triangleCount; ++t, from += triangleWords) {
-    if (classes[t] !== 0) continue;
-    corners[to++] = triangles[from];
-    corners[to++] = triangles[from + 1];
-    corners[to++] = triangles[from + 2];
-  }
-  return corners;
 }
 
 function drawnNormals(positions: Float32Array, corners: Uint32Array): Int16Array {

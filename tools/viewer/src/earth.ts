@@ -1,51 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Earth below the terrain, as the engine tells it from what a stream says of its CRS.
-import type { Lengths, MapPosition } from './answers';
-import { type Decoder, onMap } from './decoder';
-import type { Window } from './map_window';
-import type { GroundFacts } from './module';
-
-/** The request of the stream: its certificate holds there. */
-export interface Request {
-  window?: Window;
-  error?: number;
-  levels?: number[];
-  splits?: number;
-}
-
-export interface Units {
-  horizontal: string;
-  height: string;
-}
-
-/** What the metadata of a stream tell. */
-export interface Told {
-  units: Units;
-  /** Null: written by a program that did not tell it. */
-  ground: GroundFacts | null;
-  freeOfVoids: boolean;
-  request: Request;
-}
-
-/** The facts that metadata tell; text that is none tells nothing. */
-export function toldBy(metadata: unknown): Told {
-  const all = (metadata ?? {}) as { units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: Request };
-  const g = all.ground;
-  const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
-  const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
-    isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
-  return {
-    units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
-    ground: !known ? null : {
-      geographic: g.geographic === true, semi_major: g.semi_major as number, inverse_flattening: Number(g.inverse_flattening) || 0,
-      radians_per_map_unit: g.radians_per_map_unit ?? 0, metres_per_map_unit: g.metres_per_map_unit ?? 1,
-      metres_per_height: g.metres_per_height as number,
-    },
-    freeOfVoids: all.free_of_voids === true,
-    request: all.request ?? {},
-  };
-}
+import { type Decoder, type MapPosition, onMap, type Told } from 'ptin-decoder';
+import type { Lengths } from './answers';
 
 export interface Earth {
   isDegrees: boolean;

@@ -2,13 +2,10 @@
 //
 // A terrain whose stream comes from a file: all of it, as far as the error and the number of vertices go. Questions are answered
 // from the mesh that is there, within its certificate: all numbers are the engine's.
-import type { MapPosition } from './answers';
-import { type Certified, certifiedAt } from './certified';
-import { type Decoder, boundsOf } from './decoder';
-import { type Told, toldBy } from './earth';
+import { type Certified, certifiedAt, certifiedOf, type Decoder, type MapPosition, type Told, toldBy, type Wanted } from 'ptin-decoder';
 import { Problem, moduleAt } from './fetching';
 import type { Frame } from './frame';
-import type { Answer, Certainty, Progress, Question, Wanted } from './messages';
+import type { Answer, Certainty, Progress, Question } from './messages';
 import { type Asked, Questions } from './questions';
 import { type OpenedStream, StaticStream } from './static_stream';
 import type { TerrainView, ViewEvents } from './terrain_view';
@@ -35,13 +32,7 @@ export class FileView implements TerrainView {
 
   get decoder(): Decoder { return this.still.decoder; }
 
-  get certified(): Certified {
-    const { decoder } = this;
-    const { window, levels } = this.told.request;
-    // A stream for isolines is certified along these alone.
-    const parts = levels === undefined ? [{ window: window ?? boundsOf(decoder.facts), ...decoder.certificate }] : [];
-    return { parts, otherwise: decoder.certificateByRelief };
-  }
+  get certified(): Certified { return certifiedOf(this.decoder, this.told.request); }
 
   get progress(): Progress {
     const { heldBy } = this.still;

@@ -3,9 +3,8 @@
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
 // middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
 // the whole terrain. Lengths that the page tells come from the engine.
-import { type Facts, boundsOf, onMap } from './decoder';
-import { type Earth, type Units, scaleAt } from './earth';
-import type { Window } from './map_window';
+import { boundsOf, type Facts, onMap, type Units, type Window } from 'ptin-decoder';
+import { type Earth, scaleAt } from './earth';
 
 export class Frame {
   /** The middle of the terrain, on the map. */
@@ -45,12 +44,4 @@ export class Frame {
   mapX(sceneX: number): number { return this.middleX + sceneX / this.scaleX; }
   mapY(sceneY: number): number { return this.middleY + sceneY / this.scaleY; }
   heightAt(sceneZ: number): number { return this.baseHeight + sceneZ / this.scaleZ; }
-}
-
-const bits = new DataView(new ArrayBuffer(4));
-/** The height of the bits that a vertex holds. */
-export function heightOf(facts: Facts, heightBits: number): number {
-  if (facts.heightIsFloat === 0) return facts.heightOffset + facts.heightStep * heightBits;
-  bits.setInt32(0, heightBits);
-  return facts.heightOffset + facts.heightStep * bits.getFloat32(0);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The tools: what a click asks, and how the answer is written and drawn.
-import type { MapPosition, Sight, Station } from './answers';
+import type { MapPosition } from 'ptin-decoder';
+import type { Sight, Station } from './answers';
 import { drawnSight } from './drawn_sight';
 import { bound, coordinates, height as heightText, interval, length as lengthText, metres, number, signOf } from './format';
 import type { Frame } from './frame';

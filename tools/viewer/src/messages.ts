@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the page and its Worker say to each other.
-import type { Located, MapPosition, Profile, Sight, SightRequest } from './answers';
-import type { Certified } from './certified';
-import type { Certificate, Facts } from './decoder';
+import type { Certificate, Certified, Facts, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
+import type { Located, Profile, Sight, SightRequest } from './answers';
 import type { DrawnMesh } from './drawn_mesh';
-import type { Earth, Units } from './earth';
-import type { Window } from './map_window';
-
-/** A part of the terrain, and the error at which it is wanted there, in the height's unit. */
-export interface Wanted {
-  window: Window;
-  error: number;
-}
+import type { Earth } from './earth';
 
 /** Where the terrain comes from. */
 export type Source =

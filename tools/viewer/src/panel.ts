@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The card with settings and facts: reads and writes Settings, shows Status.
-import type { Certificate } from './decoder';
+import type { Certificate } from 'ptin-decoder';
 import { bound, bytes, count, number, roundBelow, rounded, signOf } from './format';
 import type { Frame } from './frame';
 import type { Status } from './messages';

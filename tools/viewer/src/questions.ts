@@ -2,11 +2,10 @@
 //
 // The engine's questions of a mesh that was received (decoder/questions.cc), in a WebAssembly instance of their own: it answers
 // about a copy of the decoder's mesh, which is made anew when the decoder's has changed.
+import type { Certificate, Decoder, GroundFacts, MapPosition } from 'ptin-decoder';
+import { decodeErrorOf, describeGround, instanceOf, type MeshExports, meshIn, numbersAt } from 'ptin-decoder/engine';
 import { stationsOf } from './stations';
-import type { Located, MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
-import type { Certificate, Decoder } from './decoder';
-import { type MeshExports, meshIn } from './mesh';
-import { type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
+import type { Located, PointState, Profile, Sight, SightPoint } from './answers';
 
 /** What is asked: the mesh that a decoder holds, and what is known of it. */
 export interface Asked {

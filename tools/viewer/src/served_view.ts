@@ -3,15 +3,12 @@
 // A terrain of a service, as fine as the camera needs it where it looks. Each answer is a stream that goes on from those before
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
-import type { Certified, CertifiedPart } from './certified';
-import { Decoder } from './decoder';
+import { type Certified, DecodeError, type Decoder, Received, type Wanted, widened } from 'ptin-decoder';
 import { Problem } from './fetching';
 import { rounded } from './format';
 import type { Frame } from './frame';
-import { type Window, holds, widened } from './map_window';
-import type { Answer, Progress, Question, Wanted } from './messages';
-import { DecodeError } from './module';
-import type { Collection, Service, Serving } from './service';
+import type { Answer, Progress, Question } from './messages';
+import { type Collection, type Service, costOf } from './service';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 const firstBytes = 64 * 1024;
@@ -21,46 +18,6 @@ const leastBytes = 32 * 1024;
 const firstWait = 1000, longestWait = 20000;
 /** The service takes 64. */
 const mostServings = 60;
-
-/** A decoder with what it was served. */
-class Received {
-  readonly decoder: Decoder;
-  readonly have: Serving[] = [];
-  readonly whole: Wanted[] = [];
-  /** The certificate of each serving, in its window. */
-  private readonly parts: CertifiedPart[] = [];
-  /** The window of the stream that is coming, once it has begun. */
-  private coming: Window | null = null;
-  fingerprint = '';
-  constructor(module: WebAssembly.Module) {
-    this.decoder = new Decoder(module);
-  }
-
-  get certified(): Certified {
-    const now = this.coming === null ? [] : [{ window: this.coming, ...this.decoder.certificate }];
-    return { parts: [...this.parts, ...now], otherwise: this.decoder.certificateByRelief };
-  }
-
-  /** The stream of `window` has begun. */
-  begin(window: Window): void {
-    this.coming = window;
-  }
-
-  /** Notes what came of the stream that was asked for, all or a part: it counts for ever. */
-  end(wanted: Wanted): void {
-    if (this.coming === null) return;
-    const { decoder } = this;
-    this.parts.push({ window: this.coming, ...decoder.certificate });
-    this.have.push({ ...wanted, splits: decoder.splits });
-    this.coming = null;
-    if (!decoder.isComplete) decoder.beginNext();
-  }
-
-  /** True when all of `wanted` was served at its error, or at a smaller one. */
-  covers(wanted: Wanted): boolean {
-    return this.whole.some((w) => w.error <= wanted.error && holds(w.window, wanted.window));
-  }
-}
 
 export class ServedView implements TerrainView {
   private shown: Received;
@@ -225,32 +182,17 @@ export class ServedView implements TerrainView {
       return;
     }
     const coarser = { window: wanted.window, error: 2 * wanted.error };
-    to.whole.push(wanted);
+    to.giveUp(wanted);
     if (!to.covers(coarser) && coarser.error < this.collection.heights[1] - this.collection.heights[0]) this.wanted.push(coarser);
   }
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
-    const { response, fingerprint, cost } = await this.service.stream(wanted, mostBytes, to.have, to.fingerprint);
+    const response = await this.service.stream(to.asking(wanted, mostBytes));
     if (response.body === null) throw new Problem('The service answered nothing', 'The connection to it broke.');
-    to.fingerprint = fingerprint;
-    this.cost = cost;
-    const { decoder } = to;
-    const before = decoder.numbering;
-    const reader = response.body.getReader();
-    try {
-      for (;;) {
-        const { done, value } = await reader.read();
-        if (done) break;
-        this.bytes += value.length;
-        decoder.feed(value);
-        if (decoder.numbering !== before) to.begin(wanted.window);
-        if (to === this.shown) this.events.grown();
-      }
-      const isWhole = decoder.isComplete && (decoder.certificate.error <= wanted.error || decoder.splits === 0);
-      if (isWhole) to.whole.push(wanted);
-    } finally {
-      // A connection that broke leaves what came; a stream that is damaged leaves nothing to go on from.
-      to.end(wanted);
-    }
+    this.cost = costOf(response);
+    await to.take(wanted, response, (bytes) => {
+      this.bytes += bytes;
+      if (to === this.shown) this.events.grown();
+    });
   }
 }

@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The endpoints of `ptin serve` that the viewer asks. Nothing else of it knows their addresses or answers.
+import type { MapPosition, StreamBody, Window } from 'ptin-decoder';
 import { count, number } from './format';
 import type { Frame } from './frame';
 import { Problem, opened } from './fetching';
-import type { Window } from './map_window';
-import type { MapPosition, PointState, Profile, Sight, SightPoint } from './answers';
-import type { Answer, Certainty, Question, QuestionOf, Wanted } from './messages';
+import type { PointState, Profile, Sight, SightPoint } from './answers';
+import type { Answer, Certainty, Question, QuestionOf } from './messages';
 import { stationsOf } from './stations';
-
-/** What a receiver was served, as `ptin unstream` tells it and `ptin stream --have` takes it. */
-export interface Serving extends Wanted {
-  splits: number;
-}
 
 export interface Collection {
   title: string;
   bounds: Window;
   heights: [number, number];
-}
-
-export interface StreamAnswer {
-  response: Response;
-  /** Of the file that answered: streams of another one cannot go on from this one's. */
-  fingerprint: string;
-  /** What the answer cost the service, for people. */
-  cost: string;
 }
 
 /** What an answer says that it cost: pages read, and time. */
@@ -57,15 +44,11 @@ export class Service {
     return { title: String(json.title ?? this.id), bounds: terrain.bounds, heights: terrain.heights };
   }
 
-  /** Asks for what `have` lacks of `wanted`. Errors of 409 and 413 say that one has to begin anew. */
-  async stream(wanted: Wanted, mostBytes: number, have: Serving[], fingerprint: string): Promise<StreamAnswer> {
-    const asked: Json = { ...wanted, max_bytes: mostBytes };
-    if (have.length !== 0) asked.have = have;
-    if (have.length !== 0 && fingerprint !== '') asked.fingerprint = fingerprint;
-    const response = await opened(`${this.base}/stream`, {
+  /** Asks for what lacks. Errors of 409 and 413 say that one has to begin anew. */
+  stream(asked: StreamBody): Promise<Response> {
+    return opened(`${this.base}/stream`, {
       method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(asked),
     });
-    return { response, fingerprint: response.headers.get('Ptin-Fingerprint') ?? fingerprint, cost: costOf(response) };
   }
 
   /** An answer of the full terrain, whatever is drawn. */

@@ -2,7 +2,7 @@
 //
 // A stream in a file on any web host: read from its first byte on, once, and decoded while it arrives. What came is kept, so
 // that a coarser mesh can be made of it without the host.
-import { Decoder } from './decoder';
+import { Decoder } from 'ptin-decoder';
 import { Problem, opened } from './fetching';
 
 /** Bytes in the order in which they came, and a place in them. */

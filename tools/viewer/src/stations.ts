@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The points of a profile as the engine has them, as stretches with gaps between: for drawings and in words.
-import type { MapPosition, PointState, Station } from './answers';
+import type { MapPosition } from 'ptin-decoder';
+import type { PointState, Station } from './answers';
 
 /** A gap is a point without a height; one at the end tells nothing. */
 export function stationsOf(points: ReadonlyArray<MapPosition & { distance: number; height: number | null; state: PointState }>): Station[] {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A terrain that comes from a host, finer the longer it comes: from a file (file_view) or from a service (served_view).
-import type { Certified } from './certified';
-import type { Decoder } from './decoder';
+import type { Certified, Decoder, Wanted } from 'ptin-decoder';
 import type { Frame } from './frame';
-import type { Answer, Progress, Question, Wanted } from './messages';
+import type { Answer, Progress, Question } from './messages';
 
 export interface TerrainView {
   readonly name: string;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where the camera stands and what it needs: its controls, the permalink's part, and the detail that its picture shows.
+import { type Wanted, type Window, windowAround } from 'ptin-decoder';
 import { Box3, Frustum, Matrix4, PerspectiveCamera, Vector3 } from 'three';
 import { MapControls } from 'three/addons/controls/MapControls.js';
 import type { Frame } from './frame';
-import { type Window, windowAround } from './map_window';
-import type { Wanted } from './messages';
 
 /** What the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
 export interface Pose {

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import { certifiedWithin } from './certified';
-import type { Certificate } from './decoder';
+import { type Certificate, certifiedWithin, holds } from 'ptin-decoder';
 import { scaleAt } from './earth';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
 import { Inquiry } from './inquiry';
-import { holds } from './map_window';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
 import { Panel } from './panel';

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Worker: opens a terrain, hands the page meshes to draw, and passes its questions on.
-import type { Certified } from './certified';
-import type { Decoder } from './decoder';
+import { type Certified, DecodeError, type Decoder, toldBy } from 'ptin-decoder';
 import { drawnMesh, surfaceEdges } from './drawn_mesh';
-import { earthOf, toldBy } from './earth';
+import { earthOf } from './earth';
 import { Problem, moduleAt } from './fetching';
 import { FileView } from './file_view';
 import { Frame } from './frame';
 import type { FromWorker, Question, Source, Status, ToWorker } from './messages';
-import { DecodeError } from './module';
 import { Service } from './service';
 import { ServedView } from './served_view';
 import { openStream } from './static_stream';

@@ -10,7 +10,7 @@ import { tmpdir } from 'node:os';
 import { basename, dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { host, launched } from './host.mjs';
+import { host, launched } from '../../decoder/test/host.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const assets = join(here, '..', 'assets');
@@ -31,7 +31,7 @@ console.log(`the page until something is asked: ${packed} bytes packed`);
 
 const decoderPath = join(scratch, 'decoder.mjs');
 execFileSync(join(here, '..', 'node_modules', '.bin', 'esbuild'),
-  [join(here, '..', 'src', 'decoder.ts'), '--bundle', '--format=esm', '--log-level=warning', `--outfile=${decoderPath}`]);
+  [join(here, '..', '..', 'decoder', 'src', 'decoder.ts'), '--bundle', '--format=esm', '--log-level=warning', `--outfile=${decoderPath}`]);
 const { Decoder } = await import(pathToFileURL(decoderPath).href);
 const module = new WebAssembly.Module(readFileSync(join(assets, 'decoder.wasm')));
 

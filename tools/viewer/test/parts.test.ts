@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The small parts: numbers for people, permalinks, CSV, kept bytes, windows, frames of degrees, costs.
+import { certifiedAt, type CertifiedPart, certifiedWithin, toldBy, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { type CertifiedPart, certifiedAt, certifiedWithin } from '../src/certified';
 import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
-import { earthOf, scaleAt, toldBy } from '../src/earth';
+import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
 import { Frame } from '../src/frame';
-import { type Window, widened } from '../src/map_window';
 import { defaults, fromHash, toHash } from '../src/permalink';
 import { csvOf } from '../src/plot';
 import { costOf } from '../src/service';
 import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
-import { decoded, decoderModule, terrain } from './support';
+import { decoded, decoderModule, terrain } from '../../decoder/test/support';
 
 test('numbers', () => {
   assert.equal(number(0.0123456, 3), '0.0123');

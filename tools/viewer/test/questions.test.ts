@@ -2,17 +2,15 @@
 //
 // The engine's answers in WebAssembly about the mesh that is shown, against the program's of the same mesh: on a plane in metres, over
 // degrees of several parallels, with heights in feet over metres, with voids.
+import { boundsOf, DecodeError, type Decoder, type MapPosition, onMap, type Told, toldBy } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
-import type { MapPosition } from '../src/answers';
-import { type Decoder, boundsOf, onMap } from '../src/decoder';
-import { type Earth, type Told, earthOf, toldBy } from '../src/earth';
+import { type Earth, earthOf } from '../src/earth';
 import { drawnSight } from '../src/drawn_sight';
 import { Frame } from '../src/frame';
-import { DecodeError } from '../src/module';
 import { type Asked, Questions } from '../src/questions';
-import { decoded, decoderModule, file, made, ptin, questionsModule, terrain } from './support';
+import { decoded, decoderModule, file, made, ptin, questionsModule, terrain } from '../../decoder/test/support';
 
 const error = '5';
 const questions = new Questions(questionsModule());

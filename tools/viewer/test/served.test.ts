@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A terrain of a service, played by the program: only what is missing is asked for, within a budget of vertices.
+import { certifiedAt, type Serving, type StreamBody, type Wanted, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { certifiedAt } from '../src/certified';
 import { Problem } from '../src/fetching';
-import { type Window, widened } from '../src/map_window';
-import type { Wanted } from '../src/messages';
-import type { Collection, Service, Serving, StreamAnswer } from '../src/service';
+import type { Collection, Service } from '../src/service';
 import { ServedView } from '../src/served_view';
-import { decoderModule, file, ptin, terrain } from './support';
+import { decoderModule, file, ptin, terrain } from '../../decoder/test/support';
 
 interface Asked extends Wanted {
   have: Serving[];
@@ -29,13 +27,14 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
   const faults: unknown[] = [];
   let wake: (() => void) | null = null;
   const service = {
-    async stream(wanted: Wanted, mostBytes: number, have: Serving[]): Promise<StreamAnswer> {
+    async stream({ window, error, max_bytes, have = [] }: StreamBody): Promise<Response> {
+      const wanted: Wanted = { window, error };
       asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
-      refuses(asked[asked.length - 1], mostBytes);
+      refuses(asked[asked.length - 1], max_bytes);
       const more = have.length === 0 ? [] : ['--have', JSON.stringify(have)];
       ptin('stream', store, '--error', String(wanted.error), '--window', ...wanted.window.map(String), ...more,
         '-o', file('served.ptins'), '--overwrite');
-      return { response: new Response(readFileSync(file('served.ptins'))), fingerprint: 'f', cost: '' };
+      return new Response(readFileSync(file('served.ptins')), { headers: { 'Ptin-Fingerprint': 'f' } });
     },
   };
   const view = new ServedView(service as unknown as Service, collection, decoderModule(), mostVertices, {

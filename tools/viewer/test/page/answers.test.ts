@@ -5,8 +5,8 @@ import assert from 'node:assert/strict';
 import { cpSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { host } from '../host.mjs';
-import { made } from '../support';
+import { host } from '../../../decoder/test/host.mjs';
+import { made } from '../../../decoder/test/support';
 import {
   appears, askAlong, colours, compareRows, complete, counted, fast, located, onPage, phone, programRows, quick, rested, savedCsv, site, text,
   told, until,

@@ -5,8 +5,8 @@ import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { host } from '../host.mjs';
-import { file } from '../support';
+import { host } from '../../../decoder/test/host.mjs';
+import { file } from '../../../decoder/test/support';
 import { appears, colours, complete, counted, fast, layOut, onPage, portioned, rested, site, store, text, until, wide } from './browser';
 
 test('the page shows the terrain while it arrives, and then rests', () => onPage(portioned.url, async (page) => {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the tests of the page share: a browser, hosts of the page with a terrain, and what one does on a page.
+import type { Certificate } from 'ptin-decoder';
 import assert from 'node:assert/strict';
-import { type ChildProcess, spawn } from 'node:child_process';
 import { cpSync, readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
 import type { BufferGeometry, PerspectiveCamera } from 'three';
-import type { Certificate } from '../../src/decoder';
 import type { Frame } from '../../src/frame';
 import type { Pose } from '../../src/view';
-import { host, launched } from '../host.mjs';
-import { assets, file, program, ptin, terrain } from '../support';
+import { host, launched } from '../../../decoder/test/host.mjs';
+import { assets, file, ptin, terrain } from '../../../decoder/test/support';
 
 declare global {
   interface Window {
@@ -213,36 +212,4 @@ export function compareRows(rows: number[][], wanted: number[][], slack: number)
     assert.ok(Math.abs(r[0] - there[i][0]) <= slack, `${r} for ${there[i]}`);
     assert.deepEqual(r.slice(1, 4), there[i].slice(1, 4));
   });
-}
-
-/** Does something with a service of a terrain, given its address, which is over then. */
-export async function served(
-  named: string, use: (address: string, service: ChildProcess) => Promise<void>, port = 0,
-): Promise<void> {
-  const service = spawn(program, ['serve', named, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'ignore'] });
-  try {
-    await use(await addressOf(service), service);
-  } finally {
-    await ended(service);
-  }
-}
-
-function addressOf(service: ChildProcess): Promise<string> {
-  return new Promise((resolve, reject) => {
-    let said = '';
-    service.on('error', reject);
-    service.stdout!.on('data', (bytes: Buffer) => {
-      said += bytes.toString();
-      const found = /http:\/\/[\d.:]+\//.exec(said);
-      if (found !== null) resolve(found[0]);
-    });
-  });
-}
-
-/** Ends a service, and waits for its end. */
-export async function ended(service: ChildProcess): Promise<void> {
-  if (service.exitCode !== null || service.signalCode !== null) return;
-  const over = new Promise((resolve) => { service.on('exit', resolve); });
-  service.kill();
-  await over;
 }

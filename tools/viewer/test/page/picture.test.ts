@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { cpSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { gridded } from '../support';
+import { gridded } from '../../../decoder/test/support';
 import { complete, fast, lastLink, onPage, phone, quick, rested, site, text, until } from './browser';
 
 test('triangles, isolines and colours change the picture', () => onPage(`${fast.url}#error=20`, async (page) => {

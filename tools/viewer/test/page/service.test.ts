@@ -3,9 +3,9 @@
 // The page with a service: its answers against the program, what is certified where the camera looks, a service that goes away.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { hill, made, ptin } from '../support';
+import { ended, hill, made, ptin, served } from '../../../decoder/test/support';
 import {
-  appears, askAlong, colours, compareRows, complete, ended, onPage, programRows, savedCsv, served, store, text, told,
+  appears, askAlong, colours, compareRows, complete, onPage, programRows, savedCsv, store, text, told,
 } from './browser';
 
 test('opens a terrain of a service from the page that lists them', () => served(`hills=${store}`, (address) => onPage(address, async (page) => {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "tools/viewer/decoder/ground.h"
-#include "tools/viewer/decoder/module.h"
+#include "tools/decoder/wasm/ground.h"
+#include "tools/decoder/wasm/module.h"
 
 namespace {
 

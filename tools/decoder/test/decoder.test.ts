@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The decoder in WebAssembly against the program: the same mesh, bit for bit, however the bytes were cut.
+import { DecodeError, Decoder } from '../src/index';
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { Decoder } from '../src/decoder';
-import { DecodeError } from '../src/module';
 import { decoded, decoderModule, file, ptin, terrain, trianglesOf, trianglesOfPly } from './support';
 
 const module = decoderModule();

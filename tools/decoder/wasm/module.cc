@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/viewer/decoder/module.h"
+#include "tools/decoder/wasm/module.h"
 
 #include <cstddef>
 #include <cstdint>

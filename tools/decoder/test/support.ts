@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
-import { execFileSync } from 'node:child_process';
+import { type ChildProcess, execFileSync, spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { Decoder, type Facts, onMap } from '../src/decoder';
-import { heightOf } from '../src/frame';
-import { type MeshView, triangleWords, vertexWords } from '../src/mesh';
+import { Decoder, type Facts, type MeshView, heightOf, onMap, triangleWords, vertexWords } from '../src/index';
 
 /** The program that was built, and the small terrains of tests/data. */
 export const program = process.env.PTIN_PROGRAM ?? '';
@@ -118,4 +116,36 @@ export function made(name: 'degrees' | 'feet' | 'voids', ...options: string[]): 
   const crs = { degrees: 'EPSG:4326', feet: 'EPSG:32632+6360', voids: 'EPSG:32632' }[name];
   if (name === 'degrees') return gridded(name, crs, [86, 25], 0.04, rows, ...options);
   return gridded(name, crs, [400000, 5000000], 50, rows, ...options);
+}
+
+/** Does something with a service of a terrain, given its address, which is over then. */
+export async function served(
+  named: string, use: (address: string, service: ChildProcess) => Promise<void>, port = 0, ...options: string[]
+): Promise<void> {
+  const service = spawn(program, ['serve', named, '--listen', `127.0.0.1:${port}`, ...options], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    await use(await addressOf(service), service);
+  } finally {
+    await ended(service);
+  }
+}
+
+function addressOf(service: ChildProcess): Promise<string> {
+  return new Promise((resolve, reject) => {
+    let said = '';
+    service.on('error', reject);
+    service.stdout!.on('data', (bytes: Buffer) => {
+      said += bytes.toString();
+      const found = /http:\/\/[\d.:]+\//.exec(said);
+      if (found !== null) resolve(found[0]);
+    });
+  });
+}
+
+/** Ends a service, and waits for its end. */
+export async function ended(service: ChildProcess): Promise<void> {
+  if (service.exitCode !== null || service.signalCode !== null) return;
+  const over = new Promise((resolve) => { service.on('exit', resolve); });
+  service.kill();
+  await over;
 }

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Windows of the map: closed, west, south, east, north.
-import type { MapPosition } from './answers';
+// Places and windows of the map: in the CRS of the terrain, whatever its unit; x is to the east, y to the north.
 
+export interface MapPosition {
+  x: number;
+  y: number;
+}
+
+/** Closed. */
 export type Window = readonly [west: number, south: number, east: number, north: number];
 
 /** True when all of `inner` lies in `outer`. */

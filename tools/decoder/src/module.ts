@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Instances of the engine's modules in WebAssembly (decoder/module.h), and what they refuse.
+// Instances of the engine's modules in WebAssembly (wasm/module.h), and what they refuse.
 
 /** Why something was refused: the names of the engine's ErrorCode, in its order. */
 export const errorCodes = [

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The certificate of all that is in sight: certificates of streams hold in the windows that were asked for.
-import type { MapPosition } from './answers';
-import type { Certificate } from './decoder';
-import { type Window, holds, windowAround } from './map_window';
+import { type Certificate, type Decoder, boundsOf } from './decoder.js';
+import { type StreamRequest, toldBy } from './metadata.js';
+import { type MapPosition, type Window, holds, windowAround } from './map_window.js';
 
 /** A certificate that holds within a window of the map. */
 export interface CertifiedPart extends Certificate {
@@ -15,6 +15,16 @@ export interface Certified {
   parts: CertifiedPart[];
   /** The certificate of the whole terrain. */
   otherwise: Certificate;
+}
+
+/**
+ * The certificates of a single stream: what it certifies holds where it was asked for. One for isolines is certified along these
+ * alone: elsewhere no more is known than the least and the greatest height of the terrain.
+ */
+export function certifiedOf(decoder: Decoder, request: StreamRequest = toldBy(decoder.metadata).request): Certified {
+  const { window, levels } = request;
+  const parts = levels === undefined ? [{ window: window ?? boundsOf(decoder.facts), ...decoder.certificate }] : [];
+  return { parts, otherwise: decoder.certificateByRelief };
 }
 
 function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): number[] {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The engine's stream reader (decoder/decoder.cc), one a WebAssembly instance: bytes in as they come, a valid TIN at any time.
-import type { MapPosition } from './answers';
-import type { Window } from './map_window';
-import { type MeshExports, type MeshView, meshIn } from './mesh';
-import { type DecodeError, type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module';
+// The engine's stream reader (wasm/decoder.cc), one a WebAssembly instance: bytes in as they come, a valid TIN at any time.
+import type { MapPosition, Window } from './map_window.js';
+import { type MeshExports, type MeshView, meshIn } from './mesh.js';
+import { type DecodeError, type GroundFacts, decodeErrorOf, describeGround, instanceOf, numbersAt } from './module.js';
 
-/** In the order of the module's facts (decoder/decoder.cc). */
+/** In the order of the module's facts (wasm/decoder.cc). */
 const factNames = [
   'originX', 'originY', 'stepX', 'stepY', 'heightIsFloat', 'heightStep', 'heightOffset', 'minX', 'minY', 'maxX', 'maxY',
   'minHeight', 'maxHeight', 'baseError', 'baseDeviation',
@@ -27,6 +26,14 @@ export interface Certificate {
 /** The map position of a place on the grid. */
 export function onMap(facts: Facts, x: number, y: number): MapPosition {
   return { x: facts.originX + facts.stepX * x, y: facts.originY + facts.stepY * y };
+}
+
+const bits = new DataView(new ArrayBuffer(4));
+/** The height of the bits that a vertex holds. */
+export function heightOf(facts: Facts, heightBits: number): number {
+  if (facts.heightIsFloat === 0) return facts.heightOffset + facts.heightStep * heightBits;
+  bits.setInt32(0, heightBits);
+  return facts.heightOffset + facts.heightStep * bits.getFloat32(0);
 }
 
 /** The whole terrain on the map. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tools/viewer/decoder/ground.h"
+#include "tools/decoder/wasm/ground.h"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 #include <boost/geometry/formulas/vincenty_inverse.hpp>
 #include <boost/geometry/srs/spheroid.hpp>
 
-#include "tools/viewer/decoder/module.h"
+#include "tools/decoder/wasm/module.h"
 
 namespace ptin::viewer {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A mesh as both modules hold it in memory (decoder/module.cc): arrays of numbers, positions on a grid.
-import type { ModuleExports } from './module';
+// A mesh as both modules hold it in memory (wasm/module.cc): arrays of numbers, positions on a grid.
+import type { ModuleExports } from './module.js';
 
 /** Words of a vertex: x, y on the grid, bits of the height, a triangle. */
 export const vertexWords = 4;

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What the sender of a stream tells beside its numbers.
+import type { Window } from './map_window.js';
+import type { GroundFacts } from './module.js';
+
+/** The request of the stream: its certificate holds there. */
+export interface StreamRequest {
+  window?: Window;
+  error?: number;
+  levels?: number[];
+  splits?: number;
+}
+
+export interface Units {
+  horizontal: string;
+  height: string;
+}
+
+/** What the metadata of a stream tell. */
+export interface Told {
+  /** The CRS of the map positions as WKT, and of the heights where that is known; '': not told. */
+  crs: string;
+  units: Units;
+  /** Null: written by a program that did not tell it. */
+  ground: GroundFacts | null;
+  freeOfVoids: boolean;
+  request: StreamRequest;
+}
+
+/** The facts that metadata tell; text that is none tells nothing. */
+export function toldBy(metadata: unknown): Told {
+  const all = (metadata ?? {}) as {
+    crs?: { wkt?: unknown }; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: StreamRequest;
+  };
+  const g = all.ground;
+  const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
+  const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
+    isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
+  return {
+    crs: typeof all.crs?.wkt === 'string' ? all.crs.wkt : '',
+    units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
+    ground: !known ? null : {
+      geographic: g.geographic === true, semi_major: g.semi_major as number, inverse_flattening: Number(g.inverse_flattening) || 0,
+      radians_per_map_unit: g.radians_per_map_unit ?? 0, metres_per_map_unit: g.metres_per_map_unit ?? 1,
+      metres_per_height: g.metres_per_height as number,
+    },
+    freeOfVoids: all.free_of_voids === true,
+    request: all.request ?? {},
+  };
+}
