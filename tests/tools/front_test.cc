@@ -57,6 +57,7 @@ TEST(FrontProgram, LeavesStandardInputAndWhatGdalReadsAndWritesToTheWholeProgram
       {"isoline", "a.ptin", "--level", "1", "-o", "a.dxf"},
       {"export", "a.ptin", "-o", "a.TIF"},
       {"verify", "a.ptin"},
+      {"refine", "a.ptin", "-o", "a.ply", "--index", "spatialindex"},
   };
   for (const auto& words : left)
     EXPECT_FALSE(front_answers(words)) << ::testing::PrintToString(words);
