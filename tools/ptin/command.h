@@ -55,7 +55,7 @@ struct Command {
   const char* examples;  ///< Ends --help.
   /// `context` outlives what is declared.
   Declared (*declare)(Context& context);
-  /// Whether most of its work needs nothing of GDAL and its like (tools/ptin/front.h).
+  /// Whether most of its work needs nothing of GDAL, PROJ and libcurl (tools/ptin/front.h).
   bool is_for_front = false;
 };
 

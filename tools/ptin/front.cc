@@ -26,7 +26,6 @@ bool is_for_front(const Command& command, const ask::Reading& reading) {
   if (!command.is_for_front || reading.is_by_gdal()) return false;
   for (const auto& [name, values] : reading.given()) {
     for (const std::string& value : values) {
-      if (name == "index" && value != "packed") return false;
       const bool is_ours =
           name == "output" ? !is_written_by_gdal(command.name, value) : value != "-";
       if (!is_ours || is_remote(value)) return false;

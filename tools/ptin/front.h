@@ -7,8 +7,8 @@
 
 namespace ptin::tools {
 
-/// Whether a subcommand is likely to need nothing of GDAL, PROJ, libcurl and libspatialindex with the
-/// values that it was given. It must be false of what reads standard input, which cannot be read twice.
+/// Whether a subcommand is likely to need nothing of GDAL, PROJ and libcurl with the values that it
+/// was given. It must be false of what reads standard input, which cannot be read twice.
 [[nodiscard]] bool is_for_front(const Command& command, const ask::Reading& reading);
 
 }  // namespace ptin::tools

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The front program: `ptin` without GDAL, PROJ, libcurl and libspatialindex. In the place of their
-// functions it has stand-ins, each of which begins the command line again in the whole program.
+// The front program: `ptin` without GDAL, PROJ and libcurl. In the place of their functions it has
+// stand-ins, each of which begins the command line again in the whole program.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
