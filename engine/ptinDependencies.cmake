@@ -36,6 +36,8 @@ macro(ptin_find_dependencies)
     ptin_need(Boost 1.74 CONFIG)
     ptin_need(nlohmann_json CONFIG)
     ptin_need_library(ptin::xxhash xxhash.h xxhash)
+  endif()
+  if("second_index" IN_LIST _ptin_rooms)  # the program's, no room that is installed
     ptin_need_library(ptin::spatialindex spatialindex/SpatialIndex.h spatialindex)
   endif()
   if("crs" IN_LIST _ptin_rooms)

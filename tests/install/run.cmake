@@ -20,7 +20,7 @@ foreach(component IN ITEMS program dev gdal)
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/${component} --component ${component})
   file(GLOB_RECURSE files_${component} RELATIVE ${SCRATCH}/${component} ${SCRATCH}/${component}/*)
 endforeach()
-string(REGEX MATCH "libexec/ptin/[0-9.]+/ptin-whole" whole "${files_program}")  # none under sanitizers
+string(REGEX MATCHALL "libexec/ptin/[0-9.]+/(ptin-whole|second_index.so)" whole "${files_program}")  # none under sanitizers
 set(program bin/ptin ${whole} share/bash-completion/completions/ptin share/man/man1/ptin.1)
 if(NOT files_program STREQUAL program)
   message(FATAL_ERROR "the component program has ${files_program}, and is to have ${program}")

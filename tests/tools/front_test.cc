@@ -123,6 +123,24 @@ TEST_F(FrontAlone, SaysWhichProgramIsMissing) {
   EXPECT_EQ(nlohmann::json::parse(told.out)["error"]["code"], "not_found");
 }
 
+/// The library that it needs is loaded from beside the whole program, which is not there.
+TEST_F(FrontAlone, RefusesTheSecondIndexAlone) {
+  const std::string store = testing::built(folder_, "mountains_257.tif", "m.ptin");
+  const Outcome outcome = run("locate " + store + " 380000 3800000 --index spatialindex");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.out.find("needs libspatialindex"), std::string::npos) << outcome.out;
+}
+
+TEST(FrontProgram, LoadsTheSecondIndex) {
+  const TestFolder folder;
+  const std::string store = testing::built(folder, "mountains_257.tif", "m.ptin");
+  const std::vector<std::string> words = {"locate",  store,     "380000",
+                                          "3800000", "--index", "spatialindex"};
+  const Outcome here = testing::run_ptin(words), there = testing::spawn_ptin(words);
+  EXPECT_EQ(there.status, 0) << there.err;
+  EXPECT_EQ(there.out, here.out);
+}
+
 /// What left the buffer cannot be taken back, so the whole program would write it once more.
 TEST(FrontProgram, KnowsWhetherSomeOfTheAnswerLeft) {
   const auto left_after = [](bool is_flushed) {

@@ -11,11 +11,11 @@
 #include "engine/stop.h"
 #include "storage/file/file_questions.h"
 #include "storage/index_shape.h"
-#include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
 #include "tools/measure/io_run.h"
 #include "tools/measure/part_time.h"
 #include "tools/output/temporary_path.h"
+#include "tools/second_index.h"
 
 namespace ptin::tools {
 
@@ -48,12 +48,12 @@ class SecondIndex {
     }
   }
 
-  [[nodiscard]] std::unique_ptr<SpatialIndexRTree> open(
-      const std::shared_ptr<const StoreFile>& store, std::uint64_t memory_bytes) const {
+  [[nodiscard]] std::unique_ptr<RecordIndex> open(const std::shared_ptr<const StoreFile>& store,
+                                                  std::uint64_t memory_bytes) const {
     SpatialIndexOptions options;
     options.base = base();
     options.memory_bytes = memory_bytes;
-    return SpatialIndexRTree::open(store, options);
+    return open_second_index(store, options);
   }
   [[nodiscard]] std::string why_not_cold(const FileCache& file) const {
     for (const auto& cache : caches_) {
@@ -142,7 +142,7 @@ void IndexRuns::search(SearchFigures& figures, std::uint64_t number) {
   bool is_cold = wants_cold && run_.make_cold() && (!figures.is_second || second_->make_cold());
   const auto store = StoreFile::open(run_.request().file);
   run_.check_unchanged();
-  const std::unique_ptr<SpatialIndexRTree> second =
+  const std::unique_ptr<RecordIndex> second =
       figures.is_second ? second_->open(store, run_.request().memory_bytes) : nullptr;
   const RecordIndex& index = second ? static_cast<const RecordIndex&>(*second) : store->index();
   std::vector<PageId> pages, again;

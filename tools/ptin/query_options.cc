@@ -12,7 +12,6 @@
 #include "engine/query/questions.h"
 #include "engine/remote/remote_file.h"
 #include "storage/file/sigbus_guard.h"
-#include "storage/spatialindex_rtree.h"
 #include "tools/facts/human.h"
 #include "tools/formats/vector_file.h"
 #include "tools/output/output_file.h"
@@ -20,6 +19,7 @@
 #include "tools/ptin/source_counts.h"
 #include "tools/region/on_terrain.h"
 #include "tools/region/region_input.h"
+#include "tools/second_index.h"
 
 namespace ptin::tools {
 
@@ -112,7 +112,7 @@ Terrain open_terrain(const TerrainOptions& options, const std::optional<double>&
     }
     SpatialIndexOptions index;
     index.temporary_folder = options.temporary_folder;
-    terrain.use_index(SpatialIndexRTree::open(store, index));
+    terrain.use_index(open_second_index(store, index));
   }
   warn_of_terrain(*store, error, context);
   return terrain;
