@@ -4,6 +4,7 @@
 // library and not by the program alone.
 #include "engine/construct/source_kind.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,6 +72,23 @@ TEST_F(SourceKindOf, InputsRefusesOptionsThatWouldBeIgnored) {
   }
   // One that is not there is told of when it is opened.
   EXPECT_EQ(refusal({folder_.file("no.tif")}, resolution), "");
+}
+
+TEST_F(SourceKindOf, AStoreIsRefusedByItsFirstBytes) {
+  const std::string store = folder_.file("a.ptin"), renamed = folder_.file("a.tif");
+  build({raster_}, store, {}, {});
+  std::filesystem::copy(store, renamed);
+  BuildOptions layer;
+  layer.layer = "triangles";
+  for (const BuildOptions& options : {BuildOptions{}, layer}) {
+    for (const std::string& input : {store, renamed}) {
+      EXPECT_NE(refusal({input}, options).find("a store, not a source"), std::string::npos);
+    }
+  }
+  EXPECT_NE(refusal({raster_, store}, {}).find("a store, not a source"), std::string::npos);
+  // Fewer bytes than a store begins with are none.
+  oracle::write_text(folder_.file("cut.tif"), "\x89PTIN");
+  EXPECT_EQ(source_kind({folder_.file("cut.tif")}, {}), InputKind::kRaster);
 }
 
 TEST_F(SourceKindOf, ABuildIsAskedBeforeAnythingIsWritten) {

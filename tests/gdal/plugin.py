@@ -17,7 +17,7 @@ PROGRAM, DATA, PLUGINS, SCRATCH = (os.path.abspath(a) for a in sys.argv[1:5])
 os.environ["GDAL_DRIVER_PATH"] = PLUGINS  # before GDAL is loaded
 try:
     import numpy
-    from osgeo import gdal, ogr
+    from osgeo import gdal, ogr, osr
 except ImportError as e:
     print("skipped: GDAL's Python module is not installed:", e)
     sys.exit(77)
@@ -50,6 +50,20 @@ def terrain(name):
         given = os.path.join(DATA, "ground_points.csv") if name == "points" else source(name)
         run(PROGRAM, "build", given, "-o", path, "-q")
     return path
+
+
+def write(name, values, place, projection):
+    """A raster for `build`."""
+    data = gdal.GetDriverByName("GTiff").Create(scratch(name + ".tif"), values.shape[1], values.shape[0], 1, gdal.GDT_Float32)
+    data.SetGeoTransform(place)
+    data.SetProjection(projection)
+    data.GetRasterBand(1).WriteArray(values)
+
+
+def build(name):
+    """The terrain of what was written."""
+    run(PROGRAM, "build", name + ".tif", "-o", name + ".ptin", "--overwrite", "-q")
+    return scratch(name + ".ptin")
 
 
 def opened(path, *options):
@@ -176,6 +190,130 @@ class Raster(Case):
         self.assertIn(f'"z":{data.ReadAsArray()[25, 15]:.6f}'[:-3], told.replace(" ", "").replace('"height"', '"z"'))
         self.assertEqual(opened(terrain("points"), "PIXEL_SIZE=0.5").RasterXSize, 480)
 
+    def test_pixels_of_other_types_are_those_of_the_band(self):
+        # Lines come from GDAL's blocks, which are Float32, and the whole does not.
+        for what in "height", "slope":
+            band = opened(terrain("mountains"), "BAND=" + what, "ERROR=5").GetRasterBand(1)
+            lines = numpy.vstack([band.ReadAsArray(0, i, 257, 1, buf_type=gdal.GDT_Float64) for i in range(257)])
+            whole = band.ReadAsArray(buf_type=gdal.GDT_Float64)
+            self.assertTrue((whole == lines).all())
+            self.assertTrue((whole == band.ReadAsArray()).all())
+
+    def test_lines_of_whole_pixels_are_read_by_blocks(self):
+        # VRT and rasterio give windows as real numbers, whole ones too; line by line without blocks reads 38 times as many bytes as the file has.
+        def bytes_read():
+            with open("/proc/self/io", encoding="ascii") as file:
+                return int(file.readline().split()[1])
+
+        gdal.BuildVRT(scratch("lines.vrt"), [terrain("mountains")])
+        for name in terrain("mountains"), scratch("lines.vrt"):
+            band = opened(name).GetRasterBand(1)
+            before = bytes_read()
+            for i in range(257):
+                band.ReadAsArray(0, i, 257, 1)
+            self.assertLess(bytes_read() - before, 8 * os.path.getsize(terrain("mountains")))
+
+    def test_columns_go_east_and_rows_south_whichever_way_the_source_goes(self):
+        data = opened(source("mountains"))
+        values, place = data.ReadAsArray(), data.GetGeoTransform()
+        for east, north in (1, 1), (-1, -1), (-1, 1):
+            corner = place[0] if east > 0 else place[0] + 257 * 30, place[3] - 257 * 30 if north > 0 else place[3]
+            write("turned", values[::-north, ::east], [corner[0], 30 * east, 0, corner[1], 0, 30 * north], data.GetProjection())
+            ours = opened(build("turned"), "INTERVAL=100")
+            self.assertEqual(ours.GetGeoTransform(), place)
+            self.assertTrue((ours.ReadAsArray() == values).all())
+            finer = opened(scratch("turned.ptin"), "PIXEL_SIZE=10")
+            self.assertEqual((finer.RasterXSize, finer.RasterYSize), (769, 769))
+            self.assertTrue((finer.ReadAsArray()[::3, ::3] == values).all())
+            feature = ours.GetLayer(1).GetNextFeature()  # which owns its geometry
+            line = feature.GetGeometryRef()
+            column, row = (line.GetX(0) - place[0]) // 30, (place[3] - line.GetY(0)) // 30
+            near = values[max(int(row) - 1, 0):int(row) + 2, max(int(column) - 1, 0):int(column) + 2]
+            self.assertTrue(near.min() <= line.GetZ(0) <= near.max())
+            slope = opened(scratch("turned.ptin"), "BAND=slope").ReadAsArray()
+            self.assertTrue((slope == heights(terrain("mountains"), "BAND=slope")).all())
+
+    def test_degrees_are_longitudes_first_and_slopes_over_ground(self):
+        # A plane that rises by 1 m a second of arc to the east, at 60 degrees north.
+        second = 1 / 3600
+        values = numpy.tile(numpy.arange(50, dtype=float), (40, 1))
+        place = [10.0, second, 0, 60.0, 0, -second]
+        crs = osr.SpatialReference()
+        crs.ImportFromEPSG(4326)
+        write("degrees", values, place, crs.ExportToWkt())
+        data = opened(build("degrees"), "INTERVAL=7")
+        numpy.testing.assert_allclose(data.GetGeoTransform(), place, rtol=0, atol=1e-12)
+        self.assertTrue((data.ReadAsArray() == values).all())
+        self.assertEqual(data.GetSpatialRef().GetAuthorityCode(None), "4326")
+        for srs in data.GetSpatialRef(), data.GetLayer(0).GetSpatialRef(), data.GetLayer(1).GetSpatialRef():
+            self.assertEqual(srs.GetDataAxisToSRSAxisMapping(), [2, 1])
+        feature = data.GetLayer(1).GetNextFeature()
+        line = feature.GetGeometryRef()
+        self.assertAlmostEqual(line.GetX(0), 10 + 7.5 * second, delta=1e-9)
+        self.assertTrue(60 - 40 * second <= line.GetY(0) <= 60)
+        slope = heights(scratch("degrees.ptin"), "BAND=slope")
+        self.assertTrue((abs(slope - numpy.degrees(numpy.arctan(1 / 15.5))) < 0.01).all())
+        self.assertTrue((heights(scratch("degrees.ptin"), "BAND=aspect") == 270).all())
+        finer = opened(scratch("degrees.ptin"), f"PIXEL_SIZE={second / 2}")
+        self.assertEqual((finer.RasterXSize, finer.RasterYSize), (99, 79))
+        run("gdalwarp", "-q", "-overwrite", "-t_srs", "EPSG:32632", "degrees.ptin", "warped.tif")
+        columns, rows, low, high = statistics(scratch("warped.tif"))
+        self.assertTrue(columns < rows and low == 0 and high == 49, (columns, rows, low, high))
+
+
+class Certificates(Case):
+    @staticmethod
+    def of(what):
+        told = what.GetMetadata("PTIN")
+        return float(told["CERTIFIED_ERROR"]), float(told["CERTIFIED_DEVIATION"])
+
+    def test_a_band_tells_what_its_pixels_are_certified_for(self):
+        exact = heights(terrain("mountains"))
+        band = opened(terrain("mountains")).GetRasterBand(1)
+        self.assertEqual(self.of(band)[0], 0)
+        self.assertEqual(self.of(band)[1], 2 ** -14)  # half of the last place of 1576 as Float32
+        band = opened(terrain("mountains"), "PIXEL_SIZE=10").GetRasterBand(1)  # overviews finer and coarser than the source
+        told = [self.of(band.GetOverview(i)) for i in range(band.GetOverviewCount())]
+        self.assertEqual(told[0][0], 0)
+        self.assertTrue(0 < told[1][0] < told[1][1], told)
+        for i, (error, _) in enumerate(told):
+            small = band.GetOverview(i)
+            same = opened(terrain("mountains"), "PIXEL_SIZE=10", f"ERROR={error}").GetRasterBand(1)
+            self.assertTrue((same.GetOverview(i).ReadAsArray() == small.ReadAsArray()).all())
+            self.assertLessEqual(abs(heights(terrain("mountains"), f"ERROR={error}") - exact).max(), error)
+        self.assertIn("CERTIFIED_ERROR=0\n", run("gdalinfo", "-mdd", "PTIN", terrain("mountains")))
+
+    def test_an_error_that_was_asked_for_is_told(self):
+        for error in 1, 20:
+            bound, deviation = self.of(opened(terrain("mountains"), f"ERROR={error}").GetRasterBand(1))
+            far = abs(heights(terrain("mountains"), f"ERROR={error}") - heights(terrain("mountains"))).max()
+            self.assertTrue(far <= bound <= error + 1e-4 < deviation, (far, bound, deviation))
+        self.assertEqual(opened(terrain("mountains"), "BAND=slope").GetRasterBand(1).GetMetadata("PTIN"), {})
+
+    def test_layers_tell_it_of_what_meets_the_filter(self):
+        layer = opened(terrain("mountains")).GetLayer(0)
+        whole = self.of(layer)
+        self.assertTrue(0 < whole[0] < whole[1], whole)
+        self.assertEqual(layer.GetFeatureCount(), opened(terrain("mountains"), f"ERROR={whole[0]}").GetLayer(0).GetFeatureCount())
+        layer.SetSpatialFilterRect(378000, 3802000, 380000, 3804000)
+        self.assertEqual(self.of(layer), (0, 0))
+        self.assertEqual(layer.GetMetadataItem("CERTIFIED_ERROR", "PTIN"), "0")
+        layer.SetSpatialFilterRect(0, 0, 1, 1)
+        self.assertEqual(self.of(layer), whole)
+        lines = opened(terrain("mountains"), "INTERVAL=100").GetLayer(1)
+        self.assertEqual(self.of(lines), (0, 0))
+        data = opened(terrain("mountains"), "INTERVAL=100", "ERROR=5")
+        self.assertTrue(4 < self.of(data.GetLayer(1))[0] <= 5)
+        self.assertEqual(self.of(data.GetLayer(0)), self.of(data.GetLayer(1)))
+
+    def test_what_programs_make_of_a_terrain_tells_none(self):
+        run("gdal_translate", "-q", "-outsize", "9", "9", terrain("mountains"), "nine.tif")
+        run("gdalwarp", "-q", "-overwrite", "-tr", "900", "900", terrain("mountains"), "warped.tif")
+        run("ogr2ogr", "-overwrite", "-simplify", "90", "-oo", "ERROR=5", "nine.gpkg", terrain("mountains"), "triangles")
+        for name in "nine.tif", "warped.tif", "nine.gpkg":
+            told = run("ogrinfo" if name.endswith("gpkg") else "gdalinfo", *(["-so", "-al"] if name.endswith("gpkg") else []), "-mdd", "all", name)
+            self.assertNotIn("CERTIFIED", told)
+
 
 class Statistics(Case):
     def test_range_is_that_of_the_header(self):
@@ -252,6 +390,43 @@ class Layers(Case):
         self.assertEqual({f["elev"] for f in layer}, {100.0})
         self.assertEqual(opened(terrain("coast")).GetLayerCount(), 1)
 
+    def test_numbers_are_those_of_what_was_found_last(self):
+        for options, name in (["INTERVAL=20"], "isolines"), ([], "triangles"):
+            layer = opened(terrain("mountains"), *options).GetLayerByName(name)
+            layer.SetSpatialFilterRect(378000, 3802000, 380000, 3804000)
+            found = {f.GetFID(): f.GetGeometryRef().Clone() for f in layer}
+            self.assertGreater(len(found), 10)
+            layer.ResetReading()
+            numbers = [layer.GetNextFeature().GetFID()]
+            for number, geometry in found.items():
+                feature = layer.GetFeature(number)
+                self.assertEqual(feature.GetFID(), number)
+                self.assertTrue(feature.GetGeometryRef().Equals(geometry))
+            self.assertEqual(failure(lambda of=layer: of.GetFeature(1 << 62)), (None, ""))
+            numbers += [f.GetFID() for f in iter(layer.GetNextFeature, None)]  # reading goes on where it was
+            self.assertEqual(numbers, list(found))
+            layer.SetSpatialFilterRect(0, 0, 1, 1)
+            feature = layer.GetFeature(numbers[-1])
+            self.assertTrue(feature.GetGeometryRef().Equals(found[numbers[-1]]))
+        # Without a question before, it is the one of the filter.
+        fresh = opened(terrain("mountains"), "INTERVAL=20").GetLayer(1)
+        self.assertEqual(fresh.GetFeature(3).GetFID(), 3)
+
+    def test_the_crs_outlives_the_dataset(self):
+        data = opened(terrain("mountains"), "INTERVAL=100")
+        layers = [data.GetLayer(i) for i in range(2)]
+        known = [data.GetSpatialRef()] + [layer.GetSpatialRef() for layer in layers]
+        features = [layer.GetNextFeature() for layer in layers]  # which own their geometries
+        geometries = [feature.GetGeometryRef().Clone() for feature in features]
+        del data, layers, features
+        KEPT.clear()
+        others = [opened(terrain("coast")).GetSpatialRef() for _ in range(20)]  # what took the memory
+        self.assertTrue(others[0])
+        for srs in known + [geometry.GetSpatialReference() for geometry in geometries]:
+            self.assertEqual(srs.GetAuthorityCode(None), "32611")
+        for geometry in geometries:
+            self.assertEqual(geometry.TransformTo(known[0].CloneGeogCS()), 0)
+
     def test_ogrinfo_shows_both(self):
         told = run("ogrinfo", "-so", "-al", terrain("mountains"), "-oo", "INTERVAL=100", "-oo", "ERROR=5", "-spat", "378000", "3802000", "380000",
                    "3804000")
@@ -273,7 +448,9 @@ class Refusals(Case):
 
     def test_the_program_builds_from_no_terrain(self):
         told = run(PROGRAM, "build", terrain("coast"), "-o", "again.ptin", status=2)
-        self.assertIn("not recognized", told)
+        self.assertIn("this is a store, not a source", told)
+        gdal.BuildVRT(scratch("around.vrt"), [terrain("coast")])
+        self.assertIn("not recognized", run(PROGRAM, "build", "around.vrt", "-o", "again.ptin", status=6))
         self.assertFalse(os.path.exists(scratch("again.ptin")))
 
     def test_cut_and_flipped_files_are_one_error(self):
@@ -375,8 +552,10 @@ class Programs(Case):
         server = subprocess.Popen([sys.executable, RANGE_SERVER, os.path.dirname(terrain("coast"))], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         try:
             at = f"http://127.0.0.1:{int(server.stdout.readline())}"
-            for name in at + "/plain/coast.ptin", "/vsicurl/" + at + "/plain/coast.ptin":
-                self.assertTrue((heights(name) == heights(terrain("coast"))).all())
+            shutil.copy(terrain("coast"), scratch("SIGNED.PTIN"))
+            for name in at + "/plain/coast.ptin", "/vsicurl/" + at + "/plain/coast.ptin", at + "/plain/SIGNED.PTIN?key=a/b.c#top":
+                data = gdal.OpenEx(name, allowed_drivers=["PTIN"])  # and not by GDAL's own, which copies the whole file
+                self.assertTrue((data.ReadAsArray() == heights(terrain("coast"))).all())
             data, message = failure(lambda: opened(at + "/missing/coast.ptin"))
             self.assertIsNone(data)
             self.assertIn("404", message)

@@ -3,6 +3,7 @@
 // The driver PTIN: what GDAL calls when it has loaded gdal_PTIN.so.
 #include <cstring>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <gdal_priv.h>
@@ -17,6 +18,15 @@ namespace ptin::tools {
 
 namespace {
 
+/// True for a URL of a terrain by its name, which ends where a query or a fragment begins.
+bool names_terrain(const std::string& url) {
+  const std::string_view name = std::string_view(url).substr(0, url.find_first_of("?#"));
+  constexpr std::string_view kEnd = ".ptin";
+  return name.size() > kEnd.size() && name.find("://") != std::string_view::npos &&
+         !name.starts_with("/vsi") && is_remote(url) &&
+         EQUALN(name.data() + name.size() - kEnd.size(), kEnd.data(), kEnd.size());
+}
+
 /// A store by its first bytes; a URL, of which GDAL reads none, by its name.
 int identify(GDALOpenInfo* info) {
   if (info->nHeaderBytes >= static_cast<int>(layout::kMagic.size())) {
@@ -24,11 +34,7 @@ int identify(GDALOpenInfo* info) {
         std::memcmp(info->pabyHeader, layout::kMagic.data(), layout::kMagic.size()) == 0);
   }
   bool is_ours = false;
-  static_cast<void>(guarded([&] {
-    const std::string_view name = info->pszFilename;
-    is_ours = name.ends_with(".ptin") && name.find("://") != std::string_view::npos &&
-              !name.starts_with("/vsi") && is_remote(info->pszFilename);
-  }));
+  static_cast<void>(guarded([&] { is_ours = names_terrain(info->pszFilename); }));
   return static_cast<int>(is_ours);
 }
 

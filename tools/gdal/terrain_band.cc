@@ -2,7 +2,9 @@
 #include "tools/gdal/terrain_band.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stop_token>
 
@@ -17,6 +19,24 @@ namespace {
 constexpr int kBlockSide = 256;
 
 int halved(int side, int times) { return ((side - 1) >> times) + 1; }
+
+/// Whether the window that GDAL was given lies between pixels. rasterio and VRT
+/// give each as real numbers, whole ones too, which may have been computed.
+bool has_fractions(const GDALRasterIOExtraArg* extra, const std::array<int, 4>& whole) {
+  if (extra == nullptr || extra->bFloatingPointWindowValidity == FALSE) return false;
+  constexpr double kRounding = 1e-8;
+  const std::array real = {extra->dfXOff, extra->dfYOff, extra->dfXSize, extra->dfYSize};
+  return !std::equal(real.begin(), real.end(), whole.begin(),
+                     [](double a, int b) { return std::abs(a - b) <= kRounding; });
+}
+
+/// How far heights at most lie from those of the TIN when they are pixels of a type.
+double rounding_of(GDALDataType type, const StoreFacts& facts) {
+  if (type != GDT_Float32) return 0.0;
+  const auto largest =
+      static_cast<float>(std::max(std::abs(facts.min_height), std::abs(facts.max_height)));
+  return (std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest) / 2;
+}
 
 }  // namespace
 
@@ -38,6 +58,19 @@ TerrainBand::TerrainBand(TerrainDataset& dataset, int shift)
   nBlockXSize = nBlockYSize = kBlockSide;
   nRasterXSize = halved(dataset.GetRasterXSize(), shift);
   nRasterYSize = halved(dataset.GetRasterYSize(), shift);
+  if (dataset.options().content.value == PixelValue::kHeight) tell_certified();
+}
+
+/// What is certified of heights, that of pixels of this size. Sampled heights that the TIN meets are
+/// those of a vertex or of a plane, which the type holds.
+void TerrainBand::tell_certified() {
+  const Part whole{0, 0, 1.0 * nRasterXSize, 1.0 * nRasterYSize};
+  const DetailRequest detail = request_for(whole, nRasterXSize, nRasterYSize).detail;
+  Certificate certificate = dataset_.certificate_of(detail);
+  const double rounding = rounding_of(eDataType, dataset_.facts());
+  if (certificate.error > 0) certificate.error += rounding;
+  certificate.deviation += rounding;
+  tell_certificate(certificate, *this);
 }
 
 GDALRasterBand* TerrainBand::GetOverview(int i) {
@@ -112,12 +145,12 @@ CPLErr TerrainBand::IRasterIO(GDALRWFlag mode, int column, int row, int width, i
   if (pixel_space == 0) pixel_space = GDALGetDataTypeSizeBytes(type);
   if (line_space == 0) line_space = pixel_space * columns;
   Part part{1.0 * column, 1.0 * row, 1.0 * width, 1.0 * height};
-  const bool has_fractions = extra != nullptr && extra->bFloatingPointWindowValidity != FALSE;
-  if (has_fractions) part = {extra->dfXOff, extra->dfYOff, extra->dfXSize, extra->dfYSize};
+  const bool is_between = has_fractions(extra, {column, row, width, height});
+  if (is_between) part = {extra->dfXOff, extra->dfYOff, extra->dfXSize, extra->dfYSize};
   // Programs that go line by line or by other small windows get GDAL's cache of blocks, so that no
   // page is read for each line.
   const bool is_small = width < nBlockXSize || height < nBlockYSize;
-  if (mode != GF_Read || (width == columns && height == rows && !has_fractions && is_small)) {
+  if (mode != GF_Read || (width == columns && height == rows && !is_between && is_small)) {
     return GDALRasterBand::IRasterIO(mode, column, row, width, height, data, columns, rows, type,
                                      pixel_space, line_space, extra);
   }
@@ -159,11 +192,14 @@ void TerrainBand::sample(const Part& part, const Target& target,
                             [&](const RasterBlock& block) { store(block, request, target); });
 }
 
-/// Writes a block of what was asked for where GDAL wants it, with GDAL's rounding for its type.
+/// Writes a block of what was asked for where GDAL wants it, with GDAL's rounding for its type: of the
+/// band's type first, as what comes by GDAL's blocks is.
 void TerrainBand::store(const RasterBlock& block, const RasterRequest& request,
                         const Target& target) const {
   const auto width = static_cast<std::size_t>(block.pixels.width);
+  const int own_size = GDALGetDataTypeSizeBytes(eDataType);
   std::vector<double> values(width);
+  std::vector<GByte> rounded(width * static_cast<std::size_t>(own_size));
   for (std::int64_t y = 0; y < block.pixels.height; ++y) {
     const std::size_t first = static_cast<std::size_t>(y) * block.stride;
     for (std::size_t x = 0; x < width; ++x) {
@@ -180,7 +216,9 @@ void TerrainBand::store(const RasterBlock& block, const RasterRequest& request,
     }
     auto* const to = static_cast<GByte*>(target.data) + (block.pixels.row + y) * target.line_space +
                      block.pixels.column * target.pixel_space;
-    GDALCopyWords64(values.data(), GDT_Float64, sizeof(double), to, target.type,
+    GDALCopyWords64(values.data(), GDT_Float64, sizeof(double), rounded.data(), eDataType, own_size,
+                    block.pixels.width);
+    GDALCopyWords64(rounded.data(), eDataType, own_size, to, target.type,
                     static_cast<int>(target.pixel_space), block.pixels.width);
   }
 }

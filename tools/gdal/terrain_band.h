@@ -53,6 +53,7 @@ class TerrainBand final : public GDALRasterBand {
     GSpacing pixel_space, line_space;
   };
   TerrainBand(TerrainDataset& dataset, int shift);
+  void tell_certified();
   [[nodiscard]] bool has_range() const noexcept;
   [[nodiscard]] RasterRequest request_for(const Part& part, int columns, int rows) const;
   void sample(const Part& part, const Target& target, const GDALRasterIOExtraArg* extra) const;

@@ -9,6 +9,7 @@
 #include "engine/remote/remote_file.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/facts/source_count.h"
+#include "tools/formats/number_text.h"
 #include "tools/gdal/terrain_band.h"
 #include "tools/gdal/terrain_layers.h"
 
@@ -61,9 +62,10 @@ TerrainDataset::TerrainDataset(const GDALOpenInfo& info)
       crs_(crs_facts(terrain_.store())),
       options_(open_options_of(info.papszOpenOptions)),
       own_pixel_(own_pixel_for(terrain_.store(), bounds())),
-      pixels_(pixels_of(facts(), own_pixel_, options_)) {
-  srs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  if (crs_.is_understood) srs_.importFromWkt(crs_.wkt.c_str());
+      pixels_(pixels_of(facts(), own_pixel_, options_)),
+      srs_(new OGRSpatialReference) {
+  srs_->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  if (crs_.is_understood) srs_->importFromWkt(crs_.wkt.c_str());
   nRasterXSize = static_cast<int>(pixels_.pixels.width);
   nRasterYSize = static_cast<int>(pixels_.pixels.height);
   // The areas of pixels reach half a pixel beyond the samples: centres there lie on the border.
@@ -80,14 +82,10 @@ TerrainDataset::TerrainDataset(const GDALOpenInfo& info)
   if (options_.interval) layers_.push_back(std::make_unique<IsolineLayer>(*this));
 }
 
-CPLErr TerrainDataset::GetGeoTransform(double* transform) {
-  const std::array<double, 6> numbers = geotransform_of(pixels_);
-  std::copy(numbers.begin(), numbers.end(), transform);
-  return CE_None;
-}
+std::array<double, 6> TerrainDataset::geotransform() const { return geotransform_of(pixels_); }
 
-OGRLayer* TerrainDataset::GetLayer(int i) {
-  if (i < 0 || i >= GetLayerCount()) return nullptr;
+OGRLayer* TerrainDataset::layer(int i) const {
+  if (i < 0 || i >= layer_count()) return nullptr;
   return layers_[static_cast<std::size_t>(i)].get();
 }
 
@@ -110,6 +108,21 @@ DetailRequest TerrainDataset::detail_for_pixels(double area) const {
   const double vertices = static_cast<double>(facts().source_samples) / samples;
   IoCounters io;
   return detail_for(terrain_.store(), static_cast<std::uint64_t>(vertices) + 1, bounds(), io);
+}
+
+Certificate TerrainDataset::certificate_of(const DetailRequest& detail) const {
+  return certify_below(terrain_.store(), detail.tolerance.value_or(-1.0));
+}
+
+void tell_certificate(const Certificate& certificate, GDALMajorObject& object) {
+  const auto tell = [&](const char* name, double bound) {
+    std::string text;
+    append_number(text, bound);
+    const char* const known = object.GDALMajorObject::GetMetadataItem(name, kOwnDomain);
+    if (known == nullptr || text != known) object.SetMetadataItem(name, text.c_str(), kOwnDomain);
+  };
+  tell("CERTIFIED_ERROR", certificate.error);
+  tell("CERTIFIED_DEVIATION", certificate.deviation);
 }
 
 }  // namespace ptin::tools

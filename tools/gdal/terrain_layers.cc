@@ -2,7 +2,6 @@
 #include "tools/gdal/terrain_layers.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -17,16 +16,18 @@ namespace {
 /// About how many vertices meet the filter of a layer of triangles: a map shows no more.
 constexpr std::uint64_t kVerticesOfLayer = 50'000;
 
-/// A number for a triangle by its place: no two of a TIN have one centre.
-GIntBig number_of(const std::array<GridPoint, 3>& corners, const GridBox& bounds) {
-  std::uint64_t x = 0;
-  std::uint64_t y = 0;
-  for (const GridPoint& p : corners) {
-    x += static_cast<std::uint64_t>(p.x - bounds.min_x);
-    y += static_cast<std::uint64_t>(p.y - bounds.min_y);
-  }
-  const std::uint64_t row = 3 * static_cast<std::uint64_t>(bounds.max_x - bounds.min_x) + 1;
-  return static_cast<GIntBig>((y * row + x) & 0x7FFF'FFFF'FFFF'FFFF);
+/// How many thirds of a grid unit, where centres of triangles lie, a row of the terrain has.
+GIntBig numbers_of_row(const GridBox& bounds) {
+  return 3 * (GIntBig{bounds.max_x} - bounds.min_x) + 1;
+}
+
+Window window_of(const OGREnvelope& box) { return {box.MinX, box.MinY, box.MaxX, box.MaxY}; }
+
+/// The level of an error; of 0 or none the full TIN.
+DetailRequest detail_of(const std::optional<double>& error) {
+  DetailRequest detail;
+  if (error.value_or(0) > 0) detail.tolerance = error;
+  return detail;
 }
 
 }  // namespace
@@ -41,54 +42,91 @@ FoundLayer::FoundLayer(const TerrainDataset& dataset, const char* name, OGRwkbGe
       const_cast<OGRSpatialReference*>(dataset.GetSpatialRef()));
 }
 
-OGRErr FoundLayer::GetExtent(OGREnvelope* extent, int /*is_forced*/) {
+OGREnvelope FoundLayer::extent() const {
   const Window bounds = dataset_.bounds();
-  extent->MinX = bounds.min_x, extent->MinY = bounds.min_y;
-  extent->MaxX = bounds.max_x, extent->MaxY = bounds.max_y;
-  return OGRERR_NONE;
+  OGREnvelope box;
+  box.MinX = bounds.min_x, box.MinY = bounds.min_y;
+  box.MaxX = bounds.max_x, box.MaxY = bounds.max_y;
+  return box;
 }
 
-int FoundLayer::TestCapability(const char* capability) {
-  return static_cast<int>(EQUAL(capability, OLCFastGetExtent) ||
-                          EQUAL(capability, OLCFastSpatialFilter));
+bool FoundLayer::is_able(const char* capability) const {
+  return EQUAL(capability, OLCFastGetExtent) || EQUAL(capability, OLCFastSpatialFilter);
+}
+
+std::optional<OGREnvelope> FoundLayer::box_of_filter() const {
+  OGREnvelope box = extent();
+  if (m_poFilterGeom != nullptr) box.Intersect(m_sFilterEnvelope);
+  return box.IsInit() ? std::optional(box) : std::nullopt;
+}
+
+void FoundLayer::renew_metadata(const char* domain) {
+  if (domain == nullptr || !EQUAL(domain, kOwnDomain)) return;
+  static_cast<void>(guarded([&] {
+    const OGREnvelope box = box_of_filter().value_or(extent());
+    tell_certificate(dataset_.certificate_of(detail(window_of(box))), *this);
+  }));
+}
+
+bool FoundLayer::find_in_filter() {
+  const std::optional<OGREnvelope> box = box_of_filter();
+  if (!box) return false;
+  if (found_ == box) return true;
+  found_.reset();
+  find(window_of(*box));
+  found_ = box;
+  next_ = 0;
+  return true;
+}
+
+std::unique_ptr<OGRFeature> FoundLayer::feature(std::size_t i) const {
+  auto result = std::make_unique<OGRFeature>(definition_);
+  fill(i, *result);
+  result->SetFID(number(i));
+  result->GetGeometryRef()->assignSpatialReference(
+      definition_->GetGeomFieldDefn(0)->GetSpatialRef());
+  return result;
 }
 
 OGRFeature* FoundLayer::GetNextRawFeature() {
-  std::unique_ptr<OGRFeature> feature;
+  std::unique_ptr<OGRFeature> next;
   static_cast<void>(guarded([&] {
-    OGREnvelope box;
-    GetExtent(&box, TRUE);
-    if (m_poFilterGeom != nullptr) box.Intersect(m_sFilterEnvelope);
-    if (!box.IsInit()) return;  // the filter lies elsewhere
-    if (found_ != box) {
-      found_.reset();
-      find({box.MinX, box.MinY, box.MaxX, box.MaxY});
-      found_ = box;
-      next_ = 0;
-    }
-    if (next_ >= size()) return;
-    feature = std::make_unique<OGRFeature>(definition_);
-    fill(next_, *feature);
-    feature->GetGeometryRef()->assignSpatialReference(
-        definition_->GetGeomFieldDefn(0)->GetSpatialRef());
+    if (!find_in_filter() || next_ >= size()) return;
+    next = feature(next_);
     ++next_;
   }));
-  return feature.release();
+  return next.release();
+}
+
+OGRFeature* FoundLayer::GetFeature(GIntBig wanted) {
+  std::unique_ptr<OGRFeature> known;
+  static_cast<void>(guarded([&] {
+    if (found_) known = found_feature(wanted);
+    if (!known && !found_ && find_in_filter()) known = found_feature(wanted);
+  }));
+  return known.release();
+}
+
+std::unique_ptr<OGRFeature> FoundLayer::found_feature(GIntBig wanted) const {
+  for (std::size_t i = 0; i < size(); ++i) {
+    if (number(i) == wanted) return feature(i);
+  }
+  return nullptr;
+}
+
+DetailRequest TriangleLayer::detail(const Window& window) const {
+  if (dataset().options().error) return detail_of(dataset().options().error);
+  IoCounters io;
+  return detail_for(dataset().terrain().store(), kVerticesOfLayer, window, io);
 }
 
 void TriangleLayer::find(const Window& window) {
   surface_.clear();
-  const OpenOptions& options = dataset().options();
   const StoreFile& store = dataset().terrain().store();
   PartRequest request;
   request.region = window;
-  request.limits.memory_bytes = options.memory_bytes;
-  IoCounters io;
-  if (!options.error) {
-    request.detail = detail_for(store, kVerticesOfLayer, window, io);
-  } else if (*options.error > 0) {
-    request.detail.tolerance = options.error;
-  }
+  request.limits.memory_bytes = dataset().options().memory_bytes;
+  request.detail = detail(window);
   parts_ = dataset().terrain().parts(request);
   tin_ = parts_->part(store.facts().bounds);
   if (tin_ == nullptr) {
@@ -101,13 +139,25 @@ void TriangleLayer::find(const Window& window) {
   }
 }
 
+/// By its place: no two triangles of a TIN have one centre.
+GIntBig TriangleLayer::number(std::size_t i) const {
+  const GridBox& bounds = dataset().facts().bounds;
+  std::uint64_t x = 0;
+  std::uint64_t y = 0;
+  for (const VertexId v : tin_->triangles[surface_[i]].v) {
+    const GridPoint& p = tin_->vertices[v].position;
+    x += static_cast<std::uint64_t>(p.x - bounds.min_x);
+    y += static_cast<std::uint64_t>(p.y - bounds.min_y);
+  }
+  const auto row = static_cast<std::uint64_t>(numbers_of_row(bounds));
+  return static_cast<GIntBig>((y * row + x) & 0x7FFF'FFFF'FFFF'FFFF);
+}
+
 void TriangleLayer::fill(std::size_t i, OGRFeature& feature) const {
   const StoreFacts& facts = dataset().facts();
-  std::array<GridPoint, 3> corners;
   OGRLinearRing ring;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vertex& vertex = tin_->vertices[tin_->triangles[surface_[i]].v[k]];
-    corners[k] = vertex.position;
+  for (const VertexId v : tin_->triangles[surface_[i]].v) {
+    const Vertex& vertex = tin_->vertices[v];
     const MapPoint at = facts.map.to_map(vertex.position.x, vertex.position.y);
     ring.addPoint(at.x, at.y, facts.heights.height(vertex.height));
   }
@@ -115,13 +165,16 @@ void TriangleLayer::fill(std::size_t i, OGRFeature& feature) const {
   auto polygon = std::make_unique<OGRPolygon>();
   polygon->addRing(&ring);
   feature.SetGeometryDirectly(polygon.release());
-  feature.SetFID(number_of(corners, facts.bounds));
 }
 
 IsolineLayer::IsolineLayer(const TerrainDataset& dataset)
     : FoundLayer(dataset, "isolines", wkbLineString25D) {
   OGRFieldDefn field("elev", OFTReal);
-  GetLayerDefn()->AddFieldDefn(&field);
+  definition().AddFieldDefn(&field);
+}
+
+DetailRequest IsolineLayer::detail(const Window& /*window*/) const {
+  return detail_of(dataset().options().error);
 }
 
 void IsolineLayer::find(const Window& window) {
@@ -133,7 +186,7 @@ void IsolineLayer::find(const Window& window) {
   if (request.levels.empty()) return;
   request.region = window;
   request.limits.memory_bytes = options.memory_bytes;
-  if (options.error.value_or(0) > 0) request.detail.tolerance = options.error;
+  request.detail = detail(window);
   lines_ = dataset().terrain().isolines(request);
 }
 
@@ -148,7 +201,6 @@ void IsolineLayer::fill(std::size_t i, OGRFeature& feature) const {
   }
   feature.SetGeometryDirectly(geometry.release());
   feature.SetField(0, height);
-  feature.SetFID(static_cast<GIntBig>(i));
 }
 
 }  // namespace ptin::tools

@@ -10,35 +10,51 @@
 #include <ogrsf_frmts.h>
 
 #include "engine/query/questions.h"
+#include "tools/gdal/gdal_faces.h"
 
 namespace ptin::tools {
 
 class TerrainDataset;
 
 /// A layer whose features are found when they are first read, all that meet the filter's box at once,
-/// and again when that box is another one.
-class FoundLayer : public OGRLayer, public OGRGetNextFeatureThroughRaw<FoundLayer> {
+/// and again when that box is another one. GetFeature() answers from what was found last, whatever the
+/// filters are now, since a number of an isoline means nothing elsewhere; it finds nothing anew but
+/// where nothing was found yet. Cost: it looks at the numbers of all that was found.
+class FoundLayer : public LayerFace, public OGRGetNextFeatureThroughRaw<FoundLayer> {
  public:
   ~FoundLayer() override { definition_->Release(); }
   void ResetReading() override { next_ = 0; }
-  OGRFeatureDefn* GetLayerDefn() override { return definition_; }
-  OGRErr GetExtent(OGREnvelope* extent, int is_forced) override;
-  using OGRLayer::GetExtent;
-  int TestCapability(const char* capability) override;
   // NOLINTNEXTLINE(readability-identifier-naming): GDAL's name
   OGRFeature* GetNextRawFeature();
+  OGRFeature* GetFeature(GIntBig wanted) override;
   DEFINE_GET_NEXT_FEATURE_THROUGH_RAW(FoundLayer)
 
  protected:
   FoundLayer(const TerrainDataset& dataset, const char* name, OGRwkbGeometryType type);
   [[nodiscard]] const TerrainDataset& dataset() const noexcept { return dataset_; }
+  [[nodiscard]] OGRFeatureDefn& definition() const override { return *definition_; }
+  /// The feature of a number among those that were found last, or null.
+  [[nodiscard]] std::unique_ptr<OGRFeature> found_feature(GIntBig wanted) const;
 
  private:
+  [[nodiscard]] OGREnvelope extent() const override;
+  [[nodiscard]] bool is_able(const char* capability) const override;
+  /// What is certified of the features that meet the filter.
+  void renew_metadata(const char* domain) override;
+  /// The filter's box within the terrain; none: it lies elsewhere.
+  [[nodiscard]] std::optional<OGREnvelope> box_of_filter() const;
+  /// Finds what meets the filter's box, unless it was found last. False: the box lies elsewhere.
+  [[nodiscard]] bool find_in_filter();
+  [[nodiscard]] std::unique_ptr<OGRFeature> feature(std::size_t i) const;
+  /// The level at which a window is asked about.
+  [[nodiscard]] virtual DetailRequest detail(const Window& window) const = 0;
   /// Finds what meets a window of the terrain, and forgets what was found before.
   virtual void find(const Window& window) = 0;
   /// How many features were found.
   [[nodiscard]] virtual std::size_t size() const = 0;
-  /// Fills in a feature.
+  /// The number of a feature.
+  [[nodiscard]] virtual GIntBig number(std::size_t i) const = 0;
+  /// Fills in a feature's geometry and fields.
   virtual void fill(std::size_t i, OGRFeature& feature) const = 0;
 
   const TerrainDataset& dataset_;
@@ -56,8 +72,10 @@ class TriangleLayer final : public FoundLayer {
       : FoundLayer(dataset, "triangles", wkbPolygon25D) {}
 
  private:
+  [[nodiscard]] DetailRequest detail(const Window& window) const override;
   void find(const Window& window) override;
   [[nodiscard]] std::size_t size() const override { return surface_.size(); }
+  [[nodiscard]] GIntBig number(std::size_t i) const override;
   void fill(std::size_t i, OGRFeature& feature) const override;
 
   std::optional<TinParts> parts_;  ///< What the triangles lie in.
@@ -66,15 +84,17 @@ class TriangleLayer final : public FoundLayer {
 };
 
 /// "isolines": LineStringZ and their height, `elev`, as ptin isoline has it; higher ground lies to
-/// the right. Exact without ERROR. Lines are cut at the filter's box.
+/// the right. Exact without ERROR. Lines are cut at the filter's box, and numbered from 0 there.
 class IsolineLayer final : public FoundLayer {
  public:
   /// REQUIRES: the dataset has an INTERVAL.
   explicit IsolineLayer(const TerrainDataset& dataset);
 
  private:
+  [[nodiscard]] DetailRequest detail(const Window& window) const override;
   void find(const Window& window) override;
   [[nodiscard]] std::size_t size() const override { return lines_ ? lines_->size() : 0; }
+  [[nodiscard]] GIntBig number(std::size_t i) const override { return static_cast<GIntBig>(i); }
   void fill(std::size_t i, OGRFeature& feature) const override;
 
   std::optional<Isolines> lines_;

@@ -245,8 +245,9 @@ std::string unknown_subcommand(std::span<const std::string> words) {
   return known ? std::string() : words[0];
 }
 
-/// A terrain is no source of another one, which the plugin of tools/gdal would make of it: so its
-/// driver is one of those that GDAL is to pass over, however often drivers are registered.
+/// A terrain is no source of another one, no region and no points of a question, which the plugin of
+/// tools/gdal would make of it, in a VRT and at a URL too: so its driver is one of those that GDAL is
+/// to pass over, however often drivers are registered. (A build refuses a file that is one by itself.)
 void pass_over_terrains() {
   std::string skipped = CPLGetConfigOption("GDAL_SKIP", "");
   if (skipped.find("PTIN") != std::string::npos) return;

@@ -5,8 +5,11 @@
 #include <cctype>
 #include <string_view>
 
+#include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/ogr_points.h"
 #include "engine/construct/read/tin_file.h"
+#include "engine/error.h"
+#include "storage/layout.h"
 
 namespace ptin {
 namespace {
@@ -33,6 +36,20 @@ bool is_text(const std::string& path) {
          name.ends_with(".tsv");
 }
 
+/// Refuses a store, which GDAL opens as a raster where the driver of tools/gdal is installed: a build
+/// of what was simplified would certify its errors against that, and not against the ground.
+void refuse_store(const std::string& path) {
+  const GdalSession session;
+  const std::string first = beginning_of_file(path, layout::kMagic.size()).value_or("");
+  if (std::equal(first.begin(), first.end(), layout::kMagic.begin(), layout::kMagic.end(),
+                 [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; })) {
+    refuse(
+        "this is a store, not a source; build from its own source, or from what `ptin export` "
+        "writes of it",
+        path);
+  }
+}
+
 }  // namespace
 
 bool wants_layer(const PointChoice& choice) noexcept {
@@ -55,6 +72,7 @@ InputKind kind_of_input(const std::string& path, const PointChoice& choice) {
   if (const std::optional<InputKind> kind = kind_by_name(path)) {
     return *kind;
   }
+  refuse_store(path);
   return wants_layer(choice) || OgrPoints::reads(path) ? InputKind::kPoints : InputKind::kRaster;
 }
 

@@ -27,7 +27,8 @@ enum class PointFormat : std::uint8_t { kLas, kText, kTin, kLayer };
 
 /// The kind of an input. Its name decides where it shows a kind. Otherwise an input is points when
 /// `choice` names a layer or an attribute, or when OGR finds a layer in the file and GDAL finds no
-/// raster; else it is a raster. Cost: opens the file where neither name nor choice decides.
+/// raster; else it is a raster. Cost: opens the file where its name does not decide.
+/// @throws Error invalid_argument  a file whose name does not decide is a store (.ptin)
 [[nodiscard]] InputKind kind_of_input(const std::string& path, const PointChoice& choice);
 
 /// True when the caller wants a layer of OGR's or one of its attributes, whatever the name says.
