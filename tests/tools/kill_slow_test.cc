@@ -23,7 +23,7 @@ using testing::read_file;
 using testing::spawn_ptin;
 using testing::TestFolder;
 
-const int kMoments = 21 / test::share_of_cases(3);
+const int kMoments = 20 / test::share_of_cases(4);
 
 enum class Source { kRaster, kPoints };
 
