@@ -392,6 +392,20 @@ class Errors(OnTerrain):
         self.assertIn("max_edge is for", str(raised.exception))
         self.assertNotIn("--", str(raised.exception))
 
+    def test_a_raster_keeps_within_its_memory(self):
+        with self.assertRaisesRegex(ptin.ResourceExhausted, "the array alone takes 80000000000 bytes"):
+            self.t.raster(size=(100_000, 100_000))
+        with self.assertRaises(ptin.ResourceExhausted):
+            self.t.raster(size=(4000, 4000), memory="64M")
+        self.assertEqual(self.t.raster(size=(1000, 1000), memory="64M").array.shape, (1000, 1000))
+
+    def test_what_is_no_number_is_said_so(self):
+        with self.assertRaisesRegex(TypeError, "an error is a number"):
+            self.t.refine(error="5")
+        with self.assertRaisesRegex(TypeError, "real numbers"):
+            self.t.locate(np.array([[1j, 2]]))
+        self.assertEqual(ptin.open(b"dem.ptin").samples, self.t.samples)
+
     def test_shapes_and_types_are_looked_at(self):
         with self.assertRaises(ptin.InvalidArgument):
             self.t.locate(np.zeros((3, 3)))

@@ -22,6 +22,7 @@ struct LasRecord {
   std::uint16_t id = 0;
   std::string content;
   bool extended = false;  ///< Behind the points (1.4).
+  std::string user = "LASF_Projection";
 };
 
 /// A LAS file to be. Fields are what the header says; change them to make a damaged one.
@@ -78,7 +79,7 @@ struct LasFileMaker {
   }
   static std::string record_head(const LasRecord& r) {
     std::string head(r.extended ? 60 : 54, '\0');
-    std::memcpy(head.data() + 2, "LASF_Projection", 15);
+    std::memcpy(head.data() + 2, r.user.data(), r.user.size());
     put<std::uint16_t>(head, 18, r.id);
     if (r.extended) {
       put<std::uint64_t>(head, 20, r.content.size());

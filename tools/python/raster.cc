@@ -2,6 +2,8 @@
 //
 // Heights at pixels.
 #include <array>
+#include <cstdint>
+#include <string>
 #include <variant>
 
 #include "engine/error.h"
@@ -74,6 +76,16 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
   if (pixels.width > INT32_MAX || pixels.height > INT32_MAX) {
     refuse("the raster would have more than 2^31 - 1 columns or rows", "size");
   }
+  const auto bytes = static_cast<std::uint64_t>(pixels.pixels()) * sizeof(double);
+  std::uint64_t& memory = request.limits.memory_bytes;
+  if (bytes > memory) {
+    throw Error(ErrorCode::resource_exhausted,
+                "the array alone takes " + std::to_string(bytes) +
+                    " bytes, more than the limit of " + std::to_string(memory) +
+                    ": ask for fewer pixels or a smaller window, or raise it",
+                "size");
+  }
+  memory -= bytes;  // What the question may take beside it.
   py::array_t<double> heights({pixels.height, pixels.width});
   const std::span<double> places(heights.mutable_data(), static_cast<std::size_t>(pixels.pixels()));
   const RasterResult found = answer(t, stop, [&] { return t.terrain.raster(request, places); });

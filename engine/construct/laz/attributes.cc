@@ -194,15 +194,16 @@ void WavePackets::pass(ArithmeticDecoder& decoder) {
   }
 }
 
-void ExtraBytes::begin() noexcept {
+void ExtraBytes::begin(std::span<const unsigned char> first) noexcept {
+  std::copy_n(first.begin(), bytes_.size(), bytes_.begin());
   for (auto& model : corrections_) {
     model.begin();
   }
 }
 
 void ExtraBytes::pass(ArithmeticDecoder& decoder) {
-  for (auto& model : corrections_) {
-    static_cast<void>(decoder.symbol(model));
+  for (std::size_t i = 0; i < bytes_.size(); ++i) {
+    bytes_[i] = static_cast<unsigned char>(bytes_[i] + decoder.symbol(corrections_[i]));
   }
 }
 

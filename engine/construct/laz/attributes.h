@@ -79,11 +79,15 @@ class WavePackets {
 /// Bytes of any meaning: each is the one of the point before, and a symbol.
 class ExtraBytes {
  public:
-  explicit ExtraBytes(std::size_t bytes) : corrections_(bytes) {}
-  void begin() noexcept;
+  explicit ExtraBytes(std::size_t bytes) : bytes_(bytes), corrections_(bytes) {}
+  /// @param first  Those of the first point.
+  void begin(std::span<const unsigned char> first) noexcept;
   void pass(ArithmeticDecoder& decoder);
+  /// Those of the point that was passed last.
+  [[nodiscard]] std::span<const unsigned char> bytes() const noexcept { return bytes_; }
 
  private:
+  std::vector<unsigned char> bytes_;
   std::vector<SymbolModel<256>> corrections_;
 };
 

@@ -33,15 +33,16 @@ ChunkTable::ChunkTable(const Source& source, const Layout& layout, std::uint64_t
   open_table(las_value<std::uint64_t>(place, 0));
 }
 
-void ChunkTable::refuse(const char* fault) const {
+void ChunkTable::refuse(const std::string& fault) const {
   throw Error(ErrorCode::invalid_argument,
-              std::string(fault) + "; the file is damaged, cut off, or was not written to its end",
+              fault + "; the file is damaged, cut off, or was not written to its end",
               source_.path);
 }
 
 void ChunkTable::open_table(std::uint64_t begin) {
   if (begin < at_ || begin > source_.bytes || source_.bytes - begin < 8) {
-    refuse("its table of chunks does not lie behind its points");
+    refuse("its table of chunks is said to begin at byte " + std::to_string(begin) + " of " +
+           std::to_string(source_.bytes) + ", and belongs behind its points");
   }
   std::array<unsigned char, 8> head{};
   source_.read(begin, head);

@@ -45,7 +45,7 @@ class ChunkTable {
  private:
   void open_table(std::uint64_t begin);
   [[nodiscard]] Chunk read_entry();
-  [[noreturn]] void refuse(const char* fault) const;
+  [[noreturn]] void refuse(const std::string& fault) const;
 
   const Source& source_;
   const Layout& layout_;

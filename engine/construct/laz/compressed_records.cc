@@ -55,9 +55,13 @@ void CompressedRecords::find_chunks(std::uint64_t begin, std::uint64_t end) {
 }
 
 void CompressedRecords::refuse(const char* fault) const {
+  const bool is_last = chunk_.first_record + chunk_.records == points_.points;
   throw Error(ErrorCode::invalid_argument,
               "the chunk of the points from " + std::to_string(chunk_.first_record) +
-                  " on is damaged: " + fault,
+                  " on is damaged: " + fault +
+                  (is_last ? ", or the header's number of points is wrong: " +
+                                 std::to_string(points_.points)
+                           : ""),
               points_.source.path);
 }
 
@@ -73,7 +77,7 @@ void CompressedRecords::next(std::vector<unsigned char>& records) {
     }
     const std::uint64_t left = chunk_.first_record + chunk_.records - read_;
     const std::uint64_t count = std::min(left, kBatchRecords);
-    records.resize(count * kRecordBytes);
+    records.resize(count * points_.layout.given_bytes());
     decoder_->read(records);
     read_ += count;
     if (count == left) {

@@ -43,7 +43,7 @@ class CompressedRecords {
   /// Chunks behind the last point of the header; 0 where that point is not among those read.
   [[nodiscard]] std::uint64_t chunks_behind() const noexcept { return chunks_behind_; }
 
-  /// The beginnings of the next points, kRecordBytes each; some thousands, none behind the last.
+  /// The beginnings of the next points, Layout::given_bytes() each; some thousands, none behind the last.
   /// @param records  Overwritten.
   /// @throws Error  invalid_argument  a chunk is damaged; io_error
   void next(std::vector<unsigned char>& records);

@@ -46,10 +46,10 @@ std::ptrdiff_t order_of(Item item) {
               path);
 }
 
-[[noreturn]] void refuse_record(const std::string& path) {
+[[noreturn]] void refuse_record(const std::string& fault, const std::string& path) {
   throw Error(ErrorCode::invalid_argument,
-              "the record that says how the points are compressed is not there, or does not fit "
-              "the header; the file is damaged",
+              "the record that says how the points are compressed " + fault +
+                  "; the file is damaged, or its header says by mistake that it is compressed",
               path);
 }
 
@@ -68,7 +68,9 @@ Layout::Part part_of(std::span<const unsigned char> bytes, bool is_layered,
         "version " + std::to_string(version) + " of parts of kind " + std::to_string(type), path);
   }
   if (item.is_layered != is_layered || size == 0 || (item.bytes != 0 && size != item.bytes)) {
-    refuse_record(path);
+    refuse_record("has a part of kind " + std::to_string(type) + " of " + std::to_string(size) +
+                      " bytes, which its compressor has not",
+                  path);
   }
   return {item.item, size};
 }
@@ -80,14 +82,20 @@ void check_parts(const Layout& layout, int format, const std::string& path) {
   for (const Layout::Part& part : layout.parts) {
     const std::ptrdiff_t order = order_of(part.item);
     if (order <= last) {
-      refuse_record(path);
+      refuse_record("has its parts in another order than points have them", path);
     }
     last = order;
     bytes += part.bytes;
   }
   const Item first = format < 6 ? Item::kPoint10 : Item::kPoint14;
-  if (layout.parts.empty() || layout.parts[0].item != first || bytes != layout.record_bytes) {
-    refuse_record(path);
+  if (bytes != layout.record_bytes) {
+    refuse_record("does not fit: its parts make " + std::to_string(bytes) +
+                      " bytes of a point, and the header says " +
+                      std::to_string(layout.record_bytes),
+                  path);
+  }
+  if (layout.parts[0].item != first) {
+    refuse_record("is not of points of format " + std::to_string(format), path);
   }
 }
 
@@ -114,15 +122,20 @@ std::uint32_t Layout::layers() const noexcept {
   return count;
 }
 
+std::uint32_t Layout::given_bytes() const noexcept {
+  const bool has_extra = gives_extra && !parts.empty() && parts.back().item == Item::kBytes;
+  return static_cast<std::uint32_t>(kRecordBytes) + (has_extra ? parts.back().bytes : 0);
+}
+
 Layout read_layout(std::span<const unsigned char> record, int format, std::uint32_t record_bytes,
                    const std::string& path) {
   if (record.size() < kHeadBytes) {
-    refuse_record(path);
+    refuse_record(record.empty() ? "is not there" : "is cut", path);
   }
   const auto compressor = las_value<std::uint16_t>(record, 0);
   const auto coder = las_value<std::uint16_t>(record, 2);
   if (compressor == 0) {
-    refuse_record(path);
+    refuse_record("names no compressor", path);
   }
   if (compressor > kLayeredChunked || coder != 0) {
     refuse_version("compressor " + std::to_string(compressor) + ", coder " + std::to_string(coder),
@@ -140,8 +153,11 @@ Layout read_layout(std::span<const unsigned char> record, int format, std::uint3
   layout.record_bytes = record_bytes;
   layout.chunk_records = las_value<std::uint32_t>(record, 12);
   const auto parts = las_value<std::uint16_t>(record, 32);
-  if (layout.chunk_records == 0 || record.size() < kHeadBytes + parts * kPartBytes) {
-    refuse_record(path);
+  if (layout.chunk_records == 0) {
+    refuse_record("says that a chunk has no points", path);
+  }
+  if (record.size() < kHeadBytes + parts * kPartBytes) {
+    refuse_record("has not room for its " + std::to_string(parts) + " parts", path);
   }
   for (std::size_t i = 0; i < parts; ++i) {
     layout.parts.push_back(

@@ -16,6 +16,10 @@ namespace ptin::laz {
 inline constexpr std::uint16_t kLayoutRecord = 22204;
 inline constexpr const char* kLayoutUser = "laszip encoded";
 
+/// The beginning of a point, as an uncompressed file has it: coordinates, intensity (formats 6 to 10:
+/// 0), numbers of returns, flags and class.
+inline constexpr std::size_t kRecordBytes = 20;
+
 /// A part of each point that is compressed by itself.
 enum class Item : std::uint16_t {
   kBytes = 0,
@@ -38,12 +42,16 @@ struct Layout {
   bool has_chunks = true;   ///< False: all points are one chunk, and there is no table of chunks.
   std::uint32_t chunk_records = kVaries;  ///< Points of each chunk but the last one, > 0.
   std::uint32_t record_bytes = 0;
+  /// Whether extra bytes are handed out, too, behind the beginning of each point (formats 0 to 5).
+  bool gives_extra = false;
   struct Part {
     Item item = Item::kBytes;
     std::uint32_t bytes = 0;
   };
   std::vector<Part> parts;  ///< In the order of their bytes.
 
+  /// Bytes of a point that are handed out.
+  [[nodiscard]] std::uint32_t given_bytes() const noexcept;
   /// Numbers of bytes that a layered chunk begins with.
   [[nodiscard]] std::uint32_t layers() const noexcept;
 };

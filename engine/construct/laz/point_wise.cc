@@ -165,9 +165,10 @@ class PointWiseDecoder final : public RecordDecoder {
     }
     if (waves_) {
       waves_->begin(rest);
+      rest = rest.subspan(WavePackets::kBytes);
     }
     if (extra_) {
-      extra_->begin();
+      extra_->begin(rest);
     }
     may_have_more_ = !layout_.has_chunks;
     decoder_.open(chunk.begin + first_.size(), chunk.end);
@@ -179,9 +180,10 @@ class PointWiseDecoder final : public RecordDecoder {
     if (is_first_ && into != end) {
       is_first_ = false;
       std::memcpy(into, first_.data(), kRecordBytes);
-      into += kRecordBytes;
+      give_extra(into);
+      into += step_;
     }
-    for (; into != end; into += kRecordBytes) {
+    for (; into != end; into += step_) {
       std::memcpy(into, points_.read(decoder_), kRecordBytes);
       if (times_) {
         times_->pass(decoder_);
@@ -194,6 +196,7 @@ class PointWiseDecoder final : public RecordDecoder {
       }
       if (extra_) {
         extra_->pass(decoder_);
+        give_extra(into);
       }
     }
   }
@@ -205,8 +208,15 @@ class PointWiseDecoder final : public RecordDecoder {
   }
 
  private:
+  void give_extra(unsigned char* record) const noexcept {
+    if (step_ > kRecordBytes) {
+      std::copy_n(extra_->bytes().begin(), step_ - kRecordBytes, record + kRecordBytes);
+    }
+  }
+
   const Source& source_;
   const Layout& layout_;
+  const std::size_t step_ = layout_.given_bytes();
   ArithmeticDecoder decoder_;
   std::vector<unsigned char> first_;  ///< The first point of the chunk, which is not compressed.
   bool is_first_ = false;

@@ -13,10 +13,6 @@
 
 namespace ptin::laz {
 
-/// The beginning of a point, as an uncompressed file has it: coordinates, intensity (formats 6 to 10:
-/// 0), numbers of returns, flags and class.
-inline constexpr std::size_t kRecordBytes = 20;
-
 class RecordDecoder {
  public:
   RecordDecoder() = default;
@@ -27,7 +23,7 @@ class RecordDecoder {
   /// Begins a chunk.
   /// @throws DamagedBytes; Error io_error
   virtual void open(const Chunk& chunk) = 0;
-  /// The next kRecordBytes of each of some points, one point after the other. All calls for a chunk
+  /// The next points, Layout::given_bytes() each, one after the other. All calls for a chunk
   /// together want no more points than it has.
   /// @throws as open()
   virtual void read(std::span<unsigned char> records) = 0;

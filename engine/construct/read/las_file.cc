@@ -125,6 +125,8 @@ void LasFile::read(std::uint64_t offset, std::span<unsigned char> into) const {
   }
 }
 
+std::uint32_t las_format_bytes(int format) noexcept { return kFormatBytes[format]; }
+
 LasHeader read_las_header(const LasFile& file) {
   Bytes bytes(375);
   const auto there = static_cast<std::size_t>(std::min<std::uint64_t>(file.bytes(), bytes.size()));

@@ -34,6 +34,9 @@ class LasFile {
   std::uint64_t bytes_ = 0;
 };
 
+/// Bytes of a point of a format, without extra bytes.
+[[nodiscard]] std::uint32_t las_format_bytes(int format) noexcept;
+
 /// Reads the header, and checks it against itself and the size of the file.
 /// @throws Error as LasReader
 [[nodiscard]] LasHeader read_las_header(const LasFile& file);

@@ -11,6 +11,7 @@
 #include "engine/construct/laz/las_value.h"
 #include "engine/construct/read/las_crs.h"
 #include "engine/construct/read/las_file.h"
+#include "engine/construct/read/las_hidden.h"
 #include "engine/construct/read/las_records.h"
 #include "engine/error.h"
 
@@ -24,7 +25,8 @@ constexpr int kMostScaleDecimals = 9;
 constexpr int kOverlapClass = 12;
 
 /// Where compressed points are and how they are compressed, which a record says.
-laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& header) {
+laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& header,
+                                        bool gives_extra) {
   laz::CompressedPoints points{
       {file.path(), file.bytes(),
        [&file](std::uint64_t offset, std::span<unsigned char> into) { file.read(offset, into); }},
@@ -39,6 +41,7 @@ laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& he
     }
   });
   points.layout = laz::read_layout(layout, header.point_format, header.record_bytes, file.path());
+  points.layout.gives_extra = gives_extra;
   return points;
 }
 
@@ -95,6 +98,10 @@ LasReader::LasReader(std::string path, const PointChoice& choice, const PointPar
     : path_(std::move(path)), returns_(choice.returns) {
   file_ = std::make_unique<LasFile>(path_);
   header_ = read_las_header(*file_);
+  if (const auto hidden = hidden_las14(*file_, header_)) {
+    hidden_ = std::make_unique<HiddenLas14>(*hidden);
+  }
+  is_old_ = header_.point_format < 6 && !hidden_;
   open_part(part);
   read_declarations();
   for (const int c : choice.classes) {
@@ -123,11 +130,11 @@ void LasReader::open_part(const PointPart& part) {
   end_ = std::clamp(part.end, begin_, header_.points);
   step_ = header_.record_bytes;
   if (header_.is_compressed) {
-    compressed_ =
-        std::make_unique<laz::CompressedRecords>(compressed_points(*file_, header_), begin_, end_);
+    laz::CompressedPoints points = compressed_points(*file_, header_, hidden_ != nullptr);
+    step_ = points.layout.given_bytes();
+    compressed_ = std::make_unique<laz::CompressedRecords>(std::move(points), begin_, end_);
     begin_ = compressed_->begin();
     end_ = compressed_->end();
-    step_ = laz::kRecordBytes;
   }
   read_ = begin_;
 }
@@ -136,12 +143,16 @@ void LasReader::open_part(const PointPart& part) {
 void LasReader::read_records() {
   if (compressed_) {
     compressed_->next(buffer_);
-    return;
+  } else {
+    const std::uint64_t count =
+        std::min(std::max<std::uint64_t>(kBatchBytes / step_, 1), end_ - read_);
+    buffer_.resize(count * step_);
+    file_->read(header_.first_point + read_ * step_, buffer_);
   }
-  const std::uint64_t count =
-      std::min(std::max<std::uint64_t>(kBatchBytes / step_, 1), end_ - read_);
-  buffer_.resize(count * step_);
-  file_->read(header_.first_point + read_ * step_, buffer_);
+  if (hidden_) {
+    show_las14(*hidden_, step_,
+               compressed_ ? laz::kRecordBytes : las_format_bytes(header_.point_format), buffer_);
+  }
 }
 
 /// Reads what the records declare, and warns of a header that does not fit its file.
@@ -225,24 +236,23 @@ SourceWarnings LasReader::warnings() const {
 
 /// The class. Formats 0 to 5 hold flags and class in one byte, formats 6 to 10 in two.
 int LasReader::class_of(const unsigned char* record) const noexcept {
-  return header_.point_format < 6 ? record[15] & 0x1f : record[16];
+  return is_old_ ? record[15] & 0x1f : record[16];
 }
 
 /// Counts a point that is not withheld. In formats 0 to 5 overlap is a class, else a flag.
 void LasReader::count_class(const unsigned char* record) {
   const int cls = class_of(record);
   ++counted_.points[static_cast<std::size_t>(cls)];
-  counted_.overlap += header_.point_format < 6 ? cls == kOverlapClass : (record[15] & 0x08) != 0;
+  counted_.overlap += is_old_ ? cls == kOverlapClass : (record[15] & 0x08) != 0;
 }
 
 /// Counts what there is to be warned of in a point that is handed out.
 void LasReader::look_at(const unsigned char* record) {
-  const bool is_old = header_.point_format < 6;
   const int cls = class_of(record);
-  noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old)) ? 1 : 0;
+  noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old_)) ? 1 : 0;
   if (returns_ != ReturnChoice::kAll) {
-    const int number = record[14] & (is_old ? 0x07 : 0x0f);
-    const int count = is_old ? (record[14] >> 3) & 0x07 : record[14] >> 4;
+    const int number = record[14] & (is_old_ ? 0x07 : 0x0f);
+    const int count = is_old_ ? (record[14] >> 3) & 0x07 : record[14] >> 4;
     odd_returns_ += number == 0 || number > count ? 1 : 0;
   }
   if (has_box_) {
@@ -259,9 +269,8 @@ void LasReader::look_at(const unsigned char* record) {
 /// True for an echo that is wanted. Formats 0 to 5 hold its number and how many its pulse has in
 /// three bits each, formats 6 to 10 in four; numbers count from 1, and 0 says nothing.
 bool LasReader::is_wanted_return(const unsigned char* record) const {
-  const bool is_old = header_.point_format < 6;
-  const int number = record[14] & (is_old ? 0x07 : 0x0f);
-  const int count = is_old ? (record[14] >> 3) & 0x07 : record[14] >> 4;
+  const int number = record[14] & (is_old_ ? 0x07 : 0x0f);
+  const int count = is_old_ ? (record[14] >> 3) & 0x07 : record[14] >> 4;
   switch (returns_) {
     case ReturnChoice::kAll:
       return true;
@@ -276,8 +285,7 @@ bool LasReader::is_wanted_return(const unsigned char* record) const {
 /// Why a point is left out: it is withheld, or of a class or a return that is not kept. One that is not
 /// withheld is counted.
 std::optional<LeftOutReason> LasReader::why_unwanted(const unsigned char* record) {
-  const bool is_old = header_.point_format < 6;
-  if ((record[15] & (is_old ? 0x80 : 0x04)) != 0) {
+  if ((record[15] & (is_old_ ? 0x80 : 0x04)) != 0) {
     return LeftOutReason::kWithheld;
   }
   count_class(record);

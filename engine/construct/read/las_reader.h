@@ -22,6 +22,7 @@
 namespace ptin {
 
 class LasFile;
+struct HiddenLas14;
 namespace laz {
 class CompressedRecords;
 }
@@ -108,6 +109,8 @@ class LasReader final : public PointStream {
   std::string path_;
   std::unique_ptr<LasFile> file_;
   LasHeader header_;
+  std::unique_ptr<HiddenLas14> hidden_;  ///< Null where there is nothing of LAS 1.4 hidden.
+  bool is_old_ = false;                  ///< Flags, returns and class are those of formats 0 to 5.
   PointStreamFacts facts_;
   SourceWarnings warnings_;
   std::array<Axis, 3> axes_;

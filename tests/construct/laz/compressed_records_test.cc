@@ -220,12 +220,12 @@ TEST(CompressedRecords, OfUnknownCompressorsAreRefused) {
   EXPECT_NE(with(2, 1).find("coder 1"), std::string::npos);
   EXPECT_NE(with(34, 99).find("parts of kind 99"), std::string::npos);
   EXPECT_NE(with(38, 1).find("version 1 of parts of kind 6"), std::string::npos);
-  for (const auto& [at, value] : {std::pair{0, 0}, {0, 3}, {32, 1}, {32, 3}, {34, 7}, {36, 21}}) {
-    EXPECT_NE(with(static_cast<std::size_t>(at), static_cast<std::uint16_t>(value),
-                   ErrorCode::invalid_argument)
-                  .find("does not fit the header"),
-              std::string::npos)
-        << at;
+  const std::tuple<std::size_t, std::uint16_t, const char*> faults[] = {
+      {0, 0, "names no compressor"},      {0, 3, "which its compressor has not"},
+      {32, 1, "its parts make 20 bytes"}, {32, 3, "has not room for its 3 parts"},
+      {34, 7, "a part of kind 7 of 20"},  {36, 21, "a part of kind 6 of 21"}};
+  for (const auto& [at, value, told] : faults) {
+    EXPECT_NE(with(at, value, ErrorCode::invalid_argument).find(told), std::string::npos) << told;
   }
   std::string wide = laz_of(made_las(0, 4080, 2, 2));
   EXPECT_NE(refusal_of(wide).find("more than 4096 bytes"), std::string::npos);

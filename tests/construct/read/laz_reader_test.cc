@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // LAZ is read as LAS is: the same points, choices, warnings and CRS, and the same file is built.
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,69 @@ TEST(LazReader, ReadsWhatLasHolds) {
   }
 }
 
+/// Points of LAS 1.4 as LASzip writes them for programs of LAS 1.2: what these do not know is in extra bytes,
+/// behind one that is the file's own.
+std::string las_of_compatibility(std::vector<LasPoint> points) {
+  LasFileMaker las;
+  las.format = 3;
+  las.extra_bytes = 6;
+  const std::pair<const char*, char> extras[] = {{"own", '\x01'},
+                                                 {"LAS 1.4 scan angle", '\x04'},
+                                                 {"LAS 1.4 extended returns", '\x01'},
+                                                 {"LAS 1.4 classification", '\x01'},
+                                                 {"LAS 1.4 flags and channel", '\x01'}};
+  std::string descriptions;
+  for (const auto& [name, type] : extras) {
+    std::string description(192, '\0');
+    description[2] = type;
+    description.replace(4, std::strlen(name), name);
+    descriptions += description;
+  }
+  las.records = {{22204, std::string(156, '\0'), false, "lascompatible"},
+                 {4, descriptions, false, "LASF_Spec"}};
+  std::string hidden;
+  for (LasPoint& p : points) {
+    const LasPoint all = p;
+    p.cls = all.cls > 31 ? 0 : all.cls;
+    p.number = std::min(all.number, 7);
+    p.returns = std::min(all.returns, 7);
+    hidden += {static_cast<char>((all.number - p.number) << 4 | (all.returns - p.returns)),
+               static_cast<char>(all.cls - p.cls), '\x03'};
+  }
+  las.points = points;
+  std::string file = las.bytes();
+  const std::size_t record = 34 + 6, first = file.size() - points.size() * record;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    file.replace(first + i * record + 34 + 3, 3, hidden, 3 * i, 3);
+  }
+  return file;
+}
+
+TEST(LazReader, FindsWhatLas14HidesInExtraBytes) {
+  LasFileMaker native;
+  native.format = 7;
+  native.minor = 4;
+  for (int i = 0; i < 900; ++i) {
+    const int returns = 1 + i % 15;
+    native.points.push_back(
+        {7 * i, i * i, 3 * i, i % 256, i % 11 == 0, 1 + (i / 15) % returns, returns});
+  }
+  const std::string las = las_of_compatibility(native.points);
+  for (const ReturnChoice returns :
+       {ReturnChoice::kAll, ReturnChoice::kFirst, ReturnChoice::kLast}) {
+    PointChoice choice;
+    choice.returns = returns;
+    const std::string wanted = told_by(native.bytes(), choice);
+    EXPECT_EQ(told_by(las, choice), wanted);
+    EXPECT_EQ(told_by(laz_of(las, options_for(3)), choice), wanted);
+    choice.classes = {2, 65, 200};
+    EXPECT_EQ(told_by(laz_of(las, options_for(3)), choice), told_by(native.bytes(), choice));
+  }
+  std::string nameless = las;
+  nameless[nameless.find("LAS 1.4 class")] = 'X';
+  EXPECT_THROW(told_by(nameless), Error);
+}
+
 TEST(LazReader, TakesTheCrsFromRecords) {
   LasFileMaker las;
   las.minor = 4;
@@ -112,9 +176,19 @@ TEST(LazReader, RefusesWhatIsDamaged) {
   std::string flipped = good;
   flipped[good.size() / 2] ^= 0x10;
   EXPECT_NE(refusal(flipped).find("the chunk of the points from "), std::string::npos);
-  std::string without = good;
-  without[235 + 2] = 'L';
-  EXPECT_NE(refusal(without).find("how the points are compressed"), std::string::npos);
+  const auto changed = [&](std::size_t at, char to) {
+    std::string bytes = good;
+    bytes[at] = to;
+    return refusal(bytes);
+  };
+  const std::size_t record = 235, content = record + 54;
+  const std::pair<std::string, const char*> told[] = {
+      {changed(record + 2, 'L'), "how the points are compressed is not there"},
+      {changed(content, 0), "names no compressor"},
+      {changed(content + 32, 0), "its parts make 0 bytes of a point, and the header says 34"},
+      {changed(content + 34 + 2, 19), "a part of kind 6 of 19 bytes"},
+      {changed(107, 'z'), "the header's number of points is wrong"}};
+  for (const auto& [said, wanted] : told) EXPECT_NE(said.find(wanted), std::string::npos) << said;
 }
 
 TEST(LazReader, IsReadInPortionsOfWholeChunks) {

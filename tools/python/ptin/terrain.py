@@ -110,8 +110,8 @@ def open(path: Path, memory: Memory = None) -> Terrain:
 
     Args:
         path: A path, or a URL (``https://``, ``s3://``, ``gs://``, ``az://``) or a name of GDAL's (``/vsi...``).
-        memory: Most bytes that a question may take, or a text as ``"2G"``; None: 4 GiB, and 1 GiB a part of
-            :meth:`Terrain.parts`. A question that needs more raises ResourceExhausted.
+        memory: Most bytes that a question may take, with the array of a raster, or a text as ``"2G"``; None: 4 GiB,
+            and 1 GiB a part of :meth:`Terrain.parts`. A question that needs more raises ResourceExhausted.
 
     Raises:
         NotFound, Corruption, UnsupportedVersion, IoError.
@@ -138,7 +138,7 @@ class Terrain:
     """
 
     def __init__(self, path: Path, memory: Memory = None) -> None:
-        name = os.fspath(path)
+        name = os.fsdecode(path)
         self._opened: Any = _ptin.open(name)
         self._pid = os.getpid()
         self._name = name if "://" in name or name.startswith("/vsi") else os.path.abspath(name)
@@ -156,6 +156,8 @@ class Terrain:
         return self._opened
 
     def _asked(self, error: Optional[float], vertices: Optional[int], memory: Memory = None) -> Any:
+        if error is not None and (isinstance(error, (str, bytes)) or np.ndim(error) != 0):
+            raise TypeError(f"an error is a number, in the unit of heights, and not {error!r}")
         return _ptin.Asked(error, vertices, self._memory if memory is None else _bytes(memory))
 
     def close(self) -> None:
@@ -285,7 +287,9 @@ class Terrain:
         """
         if isinstance(xy, np.ma.MaskedArray):
             xy = xy.astype(np.float64).filled(np.nan)
-        asked = _ptin.Asked(error, vertices, self._memory if memory is None else _bytes(memory))
+        if getattr(getattr(xy, "dtype", None), "kind", "f") == "c":
+            raise TypeError("positions are real numbers, and these are complex")
+        asked = self._asked(error, vertices, memory)
         return Heights(*_ptin.locate(self._terrain, xy, asked, None if crs is None else _crs(crs)))
 
     def profile(
