@@ -25,7 +25,7 @@ for (const name of ['mountains_257', 'coast_257']) {
 
 test('cut anywhere it is what unstream makes of the same bytes', () => {
   const bytes = readFileSync(terrain('mountains_257', '--error', '4').stream);
-  const cuts = process.env.PTIN_ALL_CASES === undefined ? 25 : 100;
+  const cuts = process.env.PTIN_ALL_CASES === undefined ? 10 : 100;
   const least = bytes.length / (cuts + 1);
   let meshes = 0;
   for (let i = 1; i <= cuts; ++i) {
