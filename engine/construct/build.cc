@@ -11,6 +11,7 @@
 
 #include "engine/construct/build_job.h"
 #include "engine/construct/grid/source_options.h"
+#include "engine/construct/kept_inputs.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/raster/raster_source.h"
 #include "engine/construct/source_kind.h"
@@ -55,6 +56,7 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
                           const BuildOptions& options, const BuildResources& resources) {
   const auto begin = std::chrono::steady_clock::now();
   check_options(options);
+  check_inputs_are_kept(all_inputs(inputs, options), output);
   const InputKind kind = source_kind(inputs, options);
   Job job{inputs, output, options, resources, plan_memory(resources.memory_bytes, kind), {}};
   if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {

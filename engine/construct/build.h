@@ -73,7 +73,8 @@ struct BuildReport {
 
 /// Builds `output` from `inputs` (one raster or several of one grid; or points; or a TIN). The
 /// output's name does not appear before the file is complete.
-/// @throws Error invalid_argument, not_found: nothing is left behind.
+/// @throws Error invalid_argument, not_found: nothing is left behind. (An output that is one of the inputs is
+///               refused, by whatever name, also where it may be overwritten.)
 ///               io_error, resource_exhausted, cancelled: a build over tiles that has begun is kept
 ///               beside the output (workspace.h) and can be resumed; the message names the folder.
 ///               internal: something else than an Error was thrown, by a function of the caller's,

@@ -724,6 +724,17 @@ class Build(unittest.TestCase):
             self.assertEqual(report.void_samples, 800)
             np.testing.assert_array_equal(np.isnan(ptin.open(f"{name}.ptin").raster(error=None).array), holes)
 
+    def test_no_source_is_its_output(self):
+        shutil.copy(RASTER, "own.tif")
+        os.symlink("own.tif", "link.tif")
+        with open("own.tif", "rb") as file:
+            before = file.read()
+        for source, output in (("own.tif", "own.tif"), ("link.tif", "own.tif"), ("own.tif", os.path.abspath("link.tif"))):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "would destroy it"):
+                ptin.build(source, output, overwrite=True)
+        with open("own.tif", "rb") as file:
+            self.assertEqual(file.read(), before)
+
     def test_points_are_built_as_their_file(self):
         path = os.path.join(ROOT, "tests/data/ground_points.csv")
         points = np.loadtxt(path, delimiter=",", skiprows=1)[:, :3]

@@ -1,80 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/ptin/kept_inputs.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <gdal_priv.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include "engine/error.h"
+#include "engine/construct/kept_inputs.h"
 #include "engine/number.h"
-#include "tools/output/file_name.h"
 
 namespace ptin::tools {
-
-namespace {
-
-struct FileIdentity {
-  dev_t device;
-  ino_t inode;
-  bool operator==(const FileIdentity&) const = default;
-};
-
-/// The identity of a file; none where no regular file has this name, as for WKT or a file still to
-/// be made.
-std::optional<FileIdentity> identity_of(const std::string& path) {
-  struct stat status {};
-  const int failure = path == "-" ? fstat(STDIN_FILENO, &status) : stat(path.c_str(), &status);
-  if (failure != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-  return FileIdentity{status.st_dev, status.st_ino};
-}
-
-bool is_number(const std::string& text) { return parse_number<double>(text).has_value(); }
-
-/// The files that a VRT is made of. Other formats are not opened, since their drivers may read a
-/// whole file to open it.
-std::vector<std::string> files_behind(const std::string& path) {
-  if (lower_extension(path) != ".vrt") return {};
-  const char* drivers[] = {"VRT", "OGR_VRT", nullptr};
-  const GDALDatasetUniquePtr data(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR, drivers));
-  std::vector<std::string> files;
-  if (!data) return files;
-  char** const list = data->GetFileList();
-  for (char** file = list; file != nullptr && *file != nullptr; ++file) files.emplace_back(*file);
-  CSLDestroy(list);
-  return files;
-}
-
-void check_input(const std::string& input, const std::string& output,
-                 const FileIdentity& identity) {
-  if (identity_of(input) == identity) {
-    throw Error(ErrorCode::invalid_argument,
-                "this output is the input " + (input == "-" ? "on standard input" : input) +
-                    " and would destroy it; give another name",
-                output);
-  }
-}
-
-}  // namespace
 
 void check_inputs_are_kept(const ask::Reading& reading) {
   const auto output = reading.given().find("output");
   if (output == reading.given().end()) return;
-  const std::string path = output->second.back();
-  const std::optional<FileIdentity> identity = path == "-" ? std::nullopt : identity_of(path);
-  if (!identity) return;
+  std::vector<std::string> inputs;
   for (const auto& [name, values] : reading.given()) {
     if (name == "output") continue;
     for (const std::string& value : values) {
-      if (is_number(value)) continue;
-      check_input(value, path, *identity);
-      for (const std::string& file : files_behind(value)) check_input(file, path, *identity);
+      if (!parse_number<double>(value)) inputs.push_back(value);
     }
   }
+  ptin::check_inputs_are_kept(inputs, output->second.back());
 }
 
 }  // namespace ptin::tools
