@@ -408,6 +408,22 @@ class Layers(Case):
             layer.SetSpatialFilterRect(0, 0, 1, 1)
             feature = layer.GetFeature(numbers[-1])
             self.assertTrue(feature.GetGeometryRef().Equals(found[numbers[-1]]))
+        # A triangle is known by its place, too, and no others are read for it.
+        some = self.features(terrain("mountains"), "triangles", "ERROR=10")
+        layer = opened(terrain("mountains"), "ERROR=10").GetLayer(0)
+        layer.SetSpatialFilterRect(378000, 3802000, 378100, 3802100)
+        near = {f.GetFID() for f in layer}
+        self.assertTrue(near)
+        for number in list(some)[::20]:
+            feature = layer.GetFeature(number)
+            self.assertTrue(feature.GetGeometryRef().Equals(some[number]))
+            self.assertEqual(feature.GetDefnRef().GetName(), "triangles")
+            for other in number + 1, -number:
+                self.assertEqual(failure(lambda n=other: layer.GetFeature(n)), (None, ""))
+        self.assertEqual({f.GetFID() for f in layer}, near)
+        exact = self.features(terrain("mountains"), "triangles", "ERROR=0", box=(378000, 3802000, 378100, 3802100))
+        small = opened(terrain("mountains"), "MEMORY_MB=1", "ERROR=0").GetLayer(0)
+        self.assertTrue(all(small.GetFeature(number) for number in exact))
         # Without a question before, it is the one of the filter.
         fresh = opened(terrain("mountains"), "INTERVAL=20").GetLayer(1)
         self.assertEqual(fresh.GetFeature(3).GetFID(), 3)

@@ -102,6 +102,7 @@ OGRFeature* FoundLayer::GetFeature(GIntBig wanted) {
   std::unique_ptr<OGRFeature> known;
   static_cast<void>(guarded([&] {
     if (found_) known = found_feature(wanted);
+    if (!known) known = feature_elsewhere(wanted);
     if (!known && !found_ && find_in_filter()) known = found_feature(wanted);
   }));
   return known.release();
@@ -137,6 +138,19 @@ void TriangleLayer::find(const Window& window) {
   for (TriangleId t = 0; t < tin_->triangles.size(); ++t) {
     if (tin_->is_alive(t) && tin_->classes[t] == TriangleClass::kSurface) surface_.push_back(t);
   }
+}
+
+std::unique_ptr<OGRFeature> TriangleLayer::feature_elsewhere(GIntBig wanted) {
+  const GridBox& bounds = dataset().facts().bounds;
+  const GIntBig row = numbers_of_row(bounds);
+  if (wanted < 0 || wanted / row > 3 * (GIntBig{bounds.max_y} - bounds.min_y)) return nullptr;
+  const double x = bounds.min_x + static_cast<double>(wanted % row) / 3;
+  const double y = bounds.min_y + static_cast<double>(wanted / row) / 3;
+  const MapPoint low = dataset().facts().map.to_map(x - 0.5, y - 0.5);
+  const MapPoint high = dataset().facts().map.to_map(x + 0.5, y + 0.5);
+  TriangleLayer there(dataset());
+  there.find({low.x, low.y, high.x, high.y});
+  return there.found_feature(wanted);
 }
 
 /// By its place: no two triangles of a TIN have one centre.

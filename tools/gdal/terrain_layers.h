@@ -18,8 +18,8 @@ class TerrainDataset;
 
 /// A layer whose features are found when they are first read, all that meet the filter's box at once,
 /// and again when that box is another one. GetFeature() answers from what was found last, whatever the
-/// filters are now, since a number of an isoline means nothing elsewhere; it finds nothing anew but
-/// where nothing was found yet. Cost: it looks at the numbers of all that was found.
+/// filters are now, since a number of an isoline means nothing elsewhere; a triangle is looked for at
+/// its place, too. What was found stays. Cost: it looks at the numbers of all that was found.
 class FoundLayer : public LayerFace, public OGRGetNextFeatureThroughRaw<FoundLayer> {
  public:
   ~FoundLayer() override { definition_->Release(); }
@@ -50,6 +50,10 @@ class FoundLayer : public LayerFace, public OGRGetNextFeatureThroughRaw<FoundLay
   [[nodiscard]] virtual DetailRequest detail(const Window& window) const = 0;
   /// Finds what meets a window of the terrain, and forgets what was found before.
   virtual void find(const Window& window) = 0;
+  /// The feature of a number that need not have been found, or null; keeps what was found.
+  [[nodiscard]] virtual std::unique_ptr<OGRFeature> feature_elsewhere(GIntBig /*wanted*/) {
+    return nullptr;
+  }
   /// How many features were found.
   [[nodiscard]] virtual std::size_t size() const = 0;
   /// The number of a feature.
@@ -74,6 +78,7 @@ class TriangleLayer final : public FoundLayer {
  private:
   [[nodiscard]] DetailRequest detail(const Window& window) const override;
   void find(const Window& window) override;
+  [[nodiscard]] std::unique_ptr<OGRFeature> feature_elsewhere(GIntBig wanted) override;
   [[nodiscard]] std::size_t size() const override { return surface_.size(); }
   [[nodiscard]] GIntBig number(std::size_t i) const override;
   void fill(std::size_t i, OGRFeature& feature) const override;
