@@ -2,6 +2,8 @@
 //
 // second_index.so: the second index with libspatialindex. What it needs of storage it finds in the
 // program that loads it (second_index.list), which is of the same build.
+#include <memory>
+
 #include "storage/spatialindex_rtree.h"
 
 /// SpatialIndexRTree::open(), for dlsym(): the caller owns the result.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a file of LAS 1.4 keeps in extra bytes, when LASzip wrote it for programs of LAS 1.3 and older (its "compatibility
+// Classes and returns of LAS 1.4 in extra bytes, where LASzip wrote a file for programs of LAS 1.3 and older (its "compatibility
 // mode"): classes beyond 31, returns beyond 7, the overlap flag. As LASzip 3.4 reads it, src/laszip_dll.cpp.
 #pragma once
 

@@ -2,12 +2,14 @@
 //
 // A terrain on a MapLibre map: a custom layer with a mesh of its own. Mercator coordinates are made in 64 bits, around the middle of
 // the terrain.
+import 'maplibre-gl/dist/maplibre-gl.css';
 import { Map, MercatorCoordinate, setWorkerUrl } from 'maplibre-gl';
 import { surfaceOf } from 'ptin-decoder';
 import { metresPerHeight, toGeographic } from './geographic.js';
 import { middleOf, refineTerrain } from './terrain.js';
 
-// MapLibre's Worker lies beside the bundle.
+// MapLibre's styles and its Worker lie beside the bundle.
+document.head.append(Object.assign(document.createElement('link'), { rel: 'stylesheet', href: 'maplibre.css' }));
 setWorkerUrl(new URL('maplibre-gl-worker.mjs', import.meta.url).href);
 const map = new Map({
   container: 'view', pitch: 55, bearing: -20, zoom: 11, maxPitch: 80, attributionControl: false,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the examples share: a terrain of `ptin serve` that refines step by step, and what is told of it.
-// The page's address names it: three.html?terrain=http://127.0.0.1:8080/collections/dem (serve with --cors '*').
+// The part that all examples share: a terrain of `ptin serve` that refines step by step, and a line that tells of it.
+// The page's address names it: page.html?with=three&terrain=http://127.0.0.1:8080/collections/dem (serve with --cors '*').
 import { ServedTerrain, boundsOf, loadDecoder, toldBy } from 'ptin-decoder';
 
 /**

@@ -53,7 +53,7 @@ export async function* decodeStream(
   yield decoder;
 }
 
-/** What a broken connection has brought counts: its failure is the stream's end, unless it was asked for. */
+/** The bytes of a source, in order. A connection that breaks ends them as their end does, unless it was asked to. */
 async function* chunksOf(source: StreamSource, signal?: AbortSignal): AsyncGenerator<Uint8Array, void, undefined> {
   if (source instanceof Uint8Array) {
     yield source;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the sender of a stream tells beside its numbers.
+// Facts that the sender of a stream tells beside its numbers.
 import type { Window } from './map_window.js';
 import type { GroundFacts } from './module.js';
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What a receiver of `ptin serve` holds: each answer of /stream goes on from those before it, so only what is missing travels.
+// The mesh that a receiver of `ptin serve` holds: each answer of /stream goes on from those before it, so only what is missing travels.
 import type { Certified, CertifiedPart } from './certified.js';
 import { Decoder } from './decoder.js';
 import { type Window, holds } from './map_window.js';

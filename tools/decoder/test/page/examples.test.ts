@@ -21,11 +21,10 @@ before(async () => {
     entryPoints: examples.map((name) => join(here, 'examples', `${name}.js`)), outdir: site, bundle: true, format: 'esm', logLevel: 'warning',
     conditions: ['source'], alias: { 'ptin-decoder': join(here, 'src/index.ts') }, nodePaths: [join(here, 'node_modules')],
   });
-  for (const name of examples) cpSync(join(here, 'examples', `${name}.html`), join(site, `${name}.html`));
+  cpSync(join(here, 'examples/page.html'), join(site, 'page.html'));
   cpSync(join(assets, 'decoder.wasm'), join(site, 'decoder.wasm'));
   const maplibre = join(here, 'node_modules/maplibre-gl/dist');
   for (const name of ['maplibre-gl-worker.mjs', 'maplibre-gl-shared.mjs']) cpSync(join(maplibre, name), join(site, name));
-  cpSync(join(maplibre, 'maplibre-gl.css'), join(site, 'maplibre.css'));
   browser = await launched();
 });
 after(() => browser?.close());
@@ -52,7 +51,7 @@ for (const name of examples) {
     page.on('pageerror', (e) => { faults.push(e.message); });
     page.on('console', (m) => { if (m.type() === 'error') faults.push(m.text()); });
     try {
-      await page.goto(`${pages.url}${name}.html?terrain=${address}collections/dem`);
+      await page.goto(`${pages.url}page.html?with=${name}&terrain=${address}collections/dem`);
       const told = page.locator('#told[data-state]');
       await told.waitFor({ timeout: 120000 }).catch(() => assert.fail(`nothing came: ${faults.join('; ')}`));
       assert.equal(await told.getAttribute('data-state'), 'complete', await told.innerText());
