@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `ptin serve` does: one row of a table a kind of question, and memory over many mixed ones.
 
-usage: bench/serve.py PTIN SERVE_LOAD FILE [--threads N] [--requests N] [--seconds S] [--limit-memory SIZE]
+usage: bench/serve.py PTIN SERVE_LOAD FILE [--threads N] [--requests N] [--seconds S] [--limit-memory SIZE] [--repeated]
 
 Starts the service on FILE and asks seeded questions over loopback.
 throughput   `wrk -t1 -c16` (Debian's package) over targets in turn, the service on the first core, wrk on the last
@@ -12,6 +12,8 @@ memory       RSS less what is of the file itself (RssFile), every 2 s over --req
              (root) the service and its part of the page cache have no more than that, as a file larger than memory has
              it, and only this is measured
 hang-up      long questions whose client leaves; until the service computes nothing, by /metrics
+repeated     with --repeated alone: pages that the system gave the service (minor faults) for ten large questions that it has
+             answered five times before, without a rest in between and after rests of three seconds
 """
 import argparse
 import json
@@ -40,9 +42,38 @@ def limit_memory(service, size):
             file.write(str(value))
 
 
-def major_faults(service):
+def faults(service, field):
+    """A number of /proc/PID/stat, counted from the state on: 7 are the minor faults, 9 the major ones."""
     with open(f"/proc/{service.process.pid}/stat") as file:
-        return int(file.read().rsplit(") ", 1)[1].split()[9])
+        return int(file.read().rsplit(") ", 1)[1].split()[field])
+
+
+def major_faults(service):
+    return faults(service, 9)
+
+
+def repeated(service, bounds):
+    """An exact mesh of the middle quarter, and isolines at 22 heights."""
+    width, height = bounds["max_x"] - bounds["min_x"], bounds["max_y"] - bounds["min_y"]
+    box = ",".join(str(edge) for edge in (bounds["min_x"] + width / 4, bounds["min_y"] + height / 4,
+                                          bounds["max_x"] - width / 4, bounds["max_y"] - height / 4))
+    terrain = json.loads(service.ask("/collections/dem")[1])["terrain"]
+    low, high = terrain["heights"]
+    for what, target in (("an exact mesh of a quarter", f"/collections/dem/mesh?f=ply&crs=native&bbox={box}"),
+                         ("22 isolines", f"/collections/dem/isolines?interval={(high - low) / 22}")):
+        for _ in range(5):
+            status, answer = service.ask(target)
+            if status != 200:
+                sys.exit(f"{target}: {status}: {answer[:300]}")
+        for rest in (0, 3):
+            fresh, took = 0, []
+            for _ in range(10):
+                before, begun = faults(service, 7), time.perf_counter()
+                service.ask(target)
+                took.append(time.perf_counter() - begun)
+                fresh += faults(service, 7) - before
+                time.sleep(rest)
+            print(f"{what}, ten times after rests of {rest} s: {fresh} page faults, median {1000 * statistics.median(took):.0f} ms")
 
 
 class Places:
@@ -218,6 +249,7 @@ def main():
     parser.add_argument("--seconds", type=int, default=8)
     parser.add_argument("--rate", type=int, default=400)
     parser.add_argument("--limit-memory")
+    parser.add_argument("--repeated", action="store_true")
     arguments = parser.parse_args()
     facts = json.loads(subprocess.run([arguments.ptin, "info", arguments.file, "--json"], capture_output=True, check=True).stdout)
     places = Places(facts["bounds"], 1)
@@ -226,6 +258,12 @@ def main():
         threads = arguments.threads
         return Service(arguments.ptin, arguments.file, *options, threads=threads, cores=CORES[:threads])
 
+    if arguments.repeated:
+        limits = ("cache_bytes=0", "vertices=5000000", "question_memory=500000000", "computing=60000")
+        service = started(*(word for limit in limits for word in ("--limit", limit)))
+        repeated(service, facts["bounds"])
+        print(f"ended with status {service.end()}")
+        return
     service = started()
     if arguments.limit_memory:
         with open(arguments.file, "rb") as file:  # out of the page cache, to be read again by the service
