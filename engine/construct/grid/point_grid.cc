@@ -186,9 +186,25 @@ PointGridScan::PointGridScan(std::optional<double> resolution, const std::string
   }
 }
 
+namespace {
+
+/// Whether two lattices have the same points. Offsets are often computed, so a millionth of a step is none.
+bool are_one(const SourceLattice& a, const SourceLattice& b) {
+  const auto is_whole = [](double steps) { return std::abs(steps - std::round(steps)) < 1e-6; };
+  return a.unit == b.unit && is_whole((a.origin_x - b.origin_x) / a.unit) &&
+         is_whole((a.origin_y - b.origin_y) / a.unit);
+}
+
+}  // namespace
+
 void PointGridScan::add_source(const PointStreamFacts& facts) {
   plan_decimals_ = std::max(plan_decimals_, facts.plan_decimals);
   height_decimals_ = std::max(height_decimals_, facts.height_decimals);
+  if (has_sources_) {
+    is_common_ = is_common_ && facts.lattice.has_value() == lattice_.has_value() &&
+                 (!lattice_ || are_one(*facts.lattice, *lattice_));
+  }
+  has_sources_ = true;
   if (facts.lattice && (!lattice_ || facts.lattice->unit < lattice_->unit)) {
     lattice_ = facts.lattice;
   }
@@ -236,7 +252,8 @@ void PointGridScan::choose_steps(PointGrid& grid) const {
     set_bounds(grid);
     return;
   }
-  if (lattice_) {
+  // Points of a source that lies on another lattice would move by up to half a step of this one.
+  if (lattice_ && is_common_) {
     grid.x = StepCounter(lattice_->unit, lattice_->origin_x);
     grid.y = StepCounter(lattice_->unit, lattice_->origin_y);
     if (fits(grid)) {

@@ -201,7 +201,9 @@ class PointGridScan {
 
   std::optional<double> resolution_;
   std::string context_;
-  std::optional<SourceLattice> lattice_;
+  std::optional<SourceLattice> lattice_;  ///< The finest one.
+  bool has_sources_ = false;
+  bool is_common_ = true;  ///< All sources lie on one lattice.
   int plan_decimals_ = 0, height_decimals_ = 0;
   PointExtent extent_;
   DecimalRange line_x_, line_y_, line_z_;

@@ -38,7 +38,7 @@ struct PointStreamFacts {
   int plan_decimals = 0;
   int height_decimals = 0;
   /// Set where the file's steps are no power of ten, or its offset is not a whole number of steps.
-  /// The grid is then this lattice, and `plan_decimals` means nothing.
+  /// The grid is then this lattice where all sources have it, and `plan_decimals` means nothing.
   std::optional<SourceLattice> lattice;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -52,6 +53,36 @@ TEST(DecimalRange, KnowsTheDigitsOfAllRoundedAlsoInParts) {
       ASSERT_EQ(first.decimals_rounded_to(decimals), expected) << decimals;
     }
   }
+}
+
+/// A grid of points of two sources, each on its lattice or on decimals.
+PointGrid grid_of(const std::vector<std::optional<SourceLattice>>& lattices,
+                  const std::vector<SourcePoint>& points) {
+  PointGridScan scan({}, "test");
+  for (const auto& lattice : lattices) {
+    PointStreamFacts facts;
+    facts.plan_decimals = lattice ? 0 : 2;
+    facts.lattice = lattice;
+    scan.add_source(facts);
+  }
+  for (const SourcePoint& p : points) scan.add(p);
+  return scan.grid();
+}
+
+TEST(PointGridScan, KeepsPointsOfTwoLattices) {
+  const std::vector<SourcePoint> points = {{{50000001, 2}, {100, 2}, {0, 0}},
+                                           {{500000015, 3}, {2005, 3}, {0, 0}},
+                                           {{500100015, 3}, {90005, 3}, {0, 0}}};
+  const SourceLattice halves{0.01, 500000.005, 0.005}, more{0.01, 500000.105, -3.005};
+  const SourceLattice round{0.01, 500000.0, 0.0};
+  for (const auto& lattices : {std::vector<std::optional<SourceLattice>>{std::nullopt, halves},
+                               {halves, std::nullopt},
+                               {round, halves}}) {
+    const PointGrid grid = grid_of(lattices, points);
+    for (const SourcePoint& p : points) EXPECT_EQ(grid.shift(p), 0.0);
+  }
+  // Sources of one lattice keep it, wherever their offsets are.
+  EXPECT_EQ(grid_of({halves, more}, points).x.unit(), 0.01);
 }
 
 TEST(StepCounter, TellsHowFarAValueIsFromItsStep) {
