@@ -7,6 +7,7 @@ BUILD is the folder of the build, which holds the program and the package, ROOT 
 where what the module needs is not installed."""
 
 import doctest
+import errno
 import glob
 import importlib
 import json
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import types
 import unittest
 from unittest import mock
@@ -104,6 +106,14 @@ class Answers(OnTerrain):
         wide[:, 1:3] = (380000, 3804000)
         np.testing.assert_array_equal(self.t.locate(wide[:, 1:3]).z, [z, z, z])
         self.assertEqual(self.t.locate(np.empty((0, 2))).z.shape, (0,))
+
+    def test_millions_are_located_in_portions(self):
+        xy = np.full((2**22 + 2, 2), (378000.0, 3804000.0))
+        xy[[1, -1]] = (380000, 3804000), (0, 0)
+        h = self.t.locate(xy)
+        expected = self.t.locate(xy[[0, 1, -1]])
+        np.testing.assert_array_equal(h.z[[0, 1, -2, -1]], expected.z[[0, 1, 0, 2]])
+        np.testing.assert_array_equal(h.state[[0, 1, -2, -1]], expected.state[[0, 1, 0, 2]])
 
     def test_locate_finds_outside(self):
         for count in (1, 2000):
@@ -191,6 +201,60 @@ class Answers(OnTerrain):
         self.assertLess(len(self.t.refine(polygon=[corners, hole], error=5, clip=True).faces), asked)
         with self.assertRaises(ptin.InvalidArgument):
             self.t.refine(window, polygon=corners)
+        far = [(xmin - 9, ymin - 9), (xmin - 8, ymin - 9), (xmin - 8, ymin - 8), (xmin - 9, ymin - 9)]
+        feature = {"type": "Feature", "geometry": geojson}
+        wkt = f"POLYGON(({', '.join(f'{x} {y}' for x, y in corners)}))"
+        with open("area.geojson", "w") as file:  # without a CRS these are degrees
+            crs = {"type": "name", "properties": {"name": "EPSG:32611"}}
+            json.dump({"type": "FeatureCollection", "crs": crs, "features": [{**feature, "properties": {}}]}, file)
+        with_heights = [(x, y, 5) for x, y in corners]
+        multi = {"type": "MultiPolygon", "coordinates": [[corners], [far]]}
+        for polygon in (feature, {"type": "FeatureCollection", "features": [feature]}, wkt, "area.geojson", with_heights, multi):
+            area = self.t.volume(polygon=polygon, level=0).area.surface
+            self.assertAlmostEqual(area, 1e6 + (0.5 if polygon is multi else 0), delta=1e-3)
+        masked = np.ma.MaskedArray(corners, False)
+        masked[1, 1] = np.ma.masked
+        for wrong, told in (
+            ({"type": "Point", "coordinates": [0, 0]}, "this is a Point"),
+            ("nowhere.gpkg", "no such file"),
+            (masked, "masked"),
+            ([[(0, 0, 0, 0)] * 3], "shape"),
+        ):
+            with self.assertRaisesRegex(ptin.Error, told):
+                self.t.volume(polygon=wrong)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "masked"):
+            self.t.profile(masked)
+
+    def test_regions_of_another_crs_are_where_they_are(self):
+        west, south, east, north = degrees = (-118.32, 34.36, -118.30, 34.38)
+        corners = [(west, south), (east, south), (east, north), (west, north)]
+        there = self.t.volume(window=degrees, crs=4326).area.surface
+        self.assertAlmostEqual(there, 1838.9 * 2218.6, delta=2e3)  # lengths of these arcs on the ellipsoid
+        self.assertEqual(self.t.volume(polygon=corners, crs="EPSG:4326").area.surface, there)
+        layer = mock.Mock(crs=4326, __geo_interface__={"type": "Polygon", "coordinates": [corners]}, spec=[])
+        self.assertEqual(self.t.volume(polygon=layer).area.surface, there)
+        line = self.t.profile([(west, south), (east, north)], crs=4326)
+        ends = self.t.locate([(west, south), (east, north)], crs=4326)
+        np.testing.assert_array_equal(line.z[[0, -1]], ends.z)
+        with self.assertWarnsRegex(UserWarning, "as longitude and latitude some would"):
+            self.assertEqual(self.t.volume(window=degrees).area.surface, 0)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "a crs is that of"):
+            self.t.volume(crs=4326)
+        for wrong in (4326.5, {"init": "epsg:4326"}, True):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "a CRS is text"):
+                self.t.volume(window=degrees, crs=wrong)
+
+    def test_polygons_that_overlap_are_one_area(self):
+        try:
+            from shapely.geometry import MultiPolygon, box
+        except ImportError:
+            self.skipTest("needs shapely")
+        a, b = box(378000, 3803000, 379000, 3804000), box(378500, 3803000, 379500, 3804000)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "not valid"):
+            self.t.volume(polygon=MultiPolygon([a, b]))
+        both = {"type": "GeometryCollection", "geometries": [a.__geo_interface__, b.__geo_interface__]}
+        self.assertAlmostEqual(self.t.volume(polygon=both).area.surface, 1.5e6, delta=1e-3)
+        self.assertEqual(len(self.t.profile(a.exterior.coords).z), len(self.t.profile(list(a.exterior.coords)).z))
 
     def test_parts_are_the_mesh(self):
         whole = self.t.refine(error=5)
@@ -272,8 +336,10 @@ class Answers(OnTerrain):
         self.assertEqual(self.t.highest(lowest=True).point.height, self.t.height_range[0])
         about = self.t.highest(error=20)
         self.assertTrue(about.height_min <= top.point.height <= about.height_max)
-        outside = self.t.highest(window=(0, 0, 1, 1))
+        with self.assertWarnsRegex(UserWarning, "misses the terrain"):
+            outside = self.t.highest(window=(0, 0, 1, 1))
         self.assertEqual((outside.state, outside.point), ("outside", None))
+        self.assertTrue(np.isnan(outside.height_min) and np.isnan(outside.height_max))
 
     def test_sight_and_viewshed(self):
         hidden = self.t.sight(*EYES)
@@ -395,13 +461,48 @@ class Errors(OnTerrain):
     def test_a_raster_keeps_within_its_memory(self):
         with self.assertRaisesRegex(ptin.ResourceExhausted, "the array alone takes 80000000000 bytes"):
             self.t.raster(size=(100_000, 100_000))
+        for side in (2_000_000, 2**31 - 1):
+            with self.assertRaises(ptin.ResourceExhausted):
+                self.t.raster(size=(side, side), memory=2.0**62)
         with self.assertRaises(ptin.ResourceExhausted):
             self.t.raster(size=(4000, 4000), memory="64M")
         self.assertEqual(self.t.raster(size=(1000, 1000), memory="64M").array.shape, (1000, 1000))
 
+    def test_the_child_of_a_fork_has_no_parts(self):
+        for is_waiting in (False, True):
+            parts = self.t.parts(error=1, memory="4M")
+            next(parts)
+            if is_waiting:
+                time.sleep(0.5)  # until the next part is made
+            child = os.fork()
+            if child == 0:
+                signal.alarm(30)
+                is_right = False
+                try:
+                    next(parts)
+                except ptin.InvalidArgument as refused:
+                    is_right = "before the process forked" in str(refused)
+                    del parts
+                    is_right = is_right and len(list(self.t.parts(error=20, memory="4M"))) > 0
+                finally:
+                    os._exit(0 if is_right else 1)
+            self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
+            self.assertGreater(len(list(parts)), 0)
+
     def test_what_is_no_number_is_said_so(self):
         with self.assertRaisesRegex(TypeError, "an error is a number"):
             self.t.refine(error="5")
+        for wrong in (0.5, -1, 2**63, "many", float("nan")):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "vertices is a whole number"):
+                self.t.refine(vertices=wrong)
+        self.assertEqual(len(self.t.refine(vertices=np.float32(500)).vertices), 500)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "columns and rows"):
+            self.t.raster(size=500)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "a pixel_size is"):
+            self.t.raster(pixel_size=(1, 2, 3))
+        self.assertEqual(len(self.t.highest(listed=2**62).vertices), 66049)
+        levels = self.t.isolines(levels=(level for level in (1000, 1100)), error=20).level
+        self.assertEqual(np.unique(levels).tolist(), [1000, 1100])
         with self.assertRaisesRegex(TypeError, "real numbers"):
             self.t.locate(np.array([[1j, 2]]))
         self.assertEqual(ptin.open(b"dem.ptin").samples, self.t.samples)
@@ -461,6 +562,16 @@ class Elsewhere(OnTerrain):
             self.assertEqual(again.locate(xy[0]).z, self.t.locate(xy[0]).z)
         with self.assertRaises(ptin.NotFound):
             ptin.open(f"{self.host}/missing/dem.ptin")
+        with self.assertRaises(FileNotFoundError) as raised:
+            ptin.open("missing.ptin")
+        self.assertEqual((raised.exception.errno, raised.exception.filename), (errno.ENOENT, "missing.ptin"))
+        self.assertIn("missing.ptin", str(raised.exception))
+
+    def test_a_silent_server_is_given_up(self):
+        with self.assertRaisesRegex(ptin.IoError, "silent"):
+            ptin.open(f"{self.host}/silent/dem.ptin", timeout=1).refine()
+        with self.assertRaisesRegex(ptin.InvalidArgument, "above 0"):
+            ptin.open("dem.ptin", timeout=0)
 
     def test_a_fork_opens_it_anew(self):
         xy = positions(self.t, 200)
@@ -613,6 +724,20 @@ class Process(OnTerrain):
             signal.signal(signal.SIGINT, before)
         self.assertEqual(ptin.build(RASTER, "stopped.ptin", discard=True, overwrite=True).samples, 66049)
 
+    def test_a_build_of_an_array_leaves_nothing(self):
+        def progress(stage, done, total):
+            """Raises when a part of the work is written down, which is done every two seconds."""
+            time.sleep(0.3)
+            for path in glob.glob(".array_stopped.ptin.ptin-build/manifest"):
+                with open(path, "rb") as manifest:
+                    if b"checkpoint" in manifest.read():
+                        raise KeyError(stage)
+
+        array, transform = source()
+        with self.assertRaises(KeyError):
+            ptin.build(np.tile(array, (4, 4)), "array_stopped.ptin", transform=transform, tile=256, progress=progress)
+        self.assertEqual([name for name in os.listdir(".") if "array_stopped" in name], [])
+
     def test_nothing_leaks(self):
         window = (378000, 3803000, 379000, 3804000)
         outside, xy = (-1.0, -1.0), positions(self.t, 1500)
@@ -702,9 +827,34 @@ class Build(unittest.TestCase):
             with ptin.open(f"{dtype}.ptin") as t:
                 self.assertEqual((t.crs, t.bounds), ("EPSG:32611", ptin.open("dem.ptin").bounds))
                 np.testing.assert_array_equal(t.raster(error=None).array, array)
-        for wrong in (array.astype("int64"), array[0], array[:, :, None]):
+        wide = np.where(array == array.max(), 2**40, array).astype("int64")
+        for grid in (array.astype("int64"), array.astype("uint64"), wide, (array / 8).astype("int8").astype("float16")):
+            ptin.build(grid, "other.ptin", transform=transform, overwrite=True)
+            np.testing.assert_array_equal(ptin.open("other.ptin").raster(error=None).array, grid)
+        for wrong in (array.astype("int64") + 2**53, array > 900, array[0], array[:, :, None], array.astype("complex")):
             with self.assertRaises(ptin.InvalidArgument):
                 ptin.build(wrong, "wrong.ptin", transform=transform)
+        with self.assertRaisesRegex(ptin.InvalidArgument, "six numbers"):
+            ptin.build(array, "wrong.ptin", transform=(1, 2))
+
+    def test_the_transform_of_pixels_is_one(self):
+        grid = np.arange(12.0).reshape(3, 4)
+        report = ptin.build(grid, "pixels.ptin", transform=(1, 0, 0, 0, 1, 0))
+        t = ptin.open("pixels.ptin")
+        self.assertEqual((report.warnings, t.bounds), ([], (0.5, 0.5, 3.5, 2.5)))
+        self.assertEqual(t.locate((3.5, 0.5)).z, grid[0, 3])
+
+    def test_what_is_no_source_is_said_so(self):
+        frame = mock.Mock(spec=["__array__"])
+        for wrong, told in ((frame, "numpy.asarray"), ([[1, 2, 3]], "lists of numbers"), (5, "a int is no source")):
+            with self.assertRaisesRegex(ptin.InvalidArgument, told):
+                ptin.build(wrong, "never.ptin")
+        with self.assertRaisesRegex(ptin.InvalidArgument, "threads"):
+            ptin.build(RASTER, "never.ptin", threads=-1)
+
+    def test_what_was_meant_otherwise_is_warned_of(self):
+        with self.assertWarnsRegex(UserWarning, "^the array: the stored value -32768 .* build with nodata -32768"):
+            ptin.build(np.full((5, 5), -32768.0), "warned.ptin", transform=(1, 0, 0, 0, -1, 0), overwrite=True)
 
     def test_voids_of_a_grid(self):
         array, transform = source()
@@ -713,9 +863,16 @@ class Build(unittest.TestCase):
         holes[100:120, 50:90] = True
         with_nan = np.where(holes, np.float32(np.nan), array)
         masked = np.ma.MaskedArray(array, holes)
+        whole = np.ma.MaskedArray(array.astype("int16"), holes)
+        taken = np.ma.MaskedArray(array.astype("uint16"), holes, fill_value=int(array[0, 0]))
+        taken[0, 1] = 0
         for name, grid, options in (
             ("nan", with_nan, {}),
             ("masked", masked, {}),
+            ("masked floats", masked, {"nodata": 1e20}),
+            ("masked integers", whole, {}),
+            ("masked integers of all kinds", taken, {}),
+            ("masked integers and nodata", whole, {"nodata": -9999}),
             ("nodata", np.where(holes, -1, array).astype("int16"), {"nodata": -1}),
             ("turned", with_nan[::-1], {}),
         ):
@@ -723,6 +880,9 @@ class Build(unittest.TestCase):
             report = ptin.build(grid, f"{name}.ptin", transform=steps, **options)
             self.assertEqual(report.void_samples, 800)
             np.testing.assert_array_equal(np.isnan(ptin.open(f"{name}.ptin").raster(error=None).array), holes)
+        for nodata in (-99999, 0.5, np.nan):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "int16 cannot hold"):
+                ptin.build(whole, "never.ptin", transform=transform, nodata=nodata)
 
     def test_no_source_is_its_output(self):
         shutil.copy(RASTER, "own.tif")

@@ -110,6 +110,7 @@ template <typename Result>
 void add_errors(py::module_& module);
 void add_questions(py::module_& module);
 void add_terrain(py::module_& module);
+void add_places(py::module_& module);
 void add_heights(py::module_& module);
 void add_meshes(py::module_& module);
 void add_rasters(py::module_& module);

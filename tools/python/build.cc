@@ -178,7 +178,8 @@ py::dict report_of(const BuildReport& r) {
   d["resumed"] = r.resumed;
   py::list warnings;
   for (const SourceWarning& warning : r.warnings.all()) {
-    warnings.append(warning.file.empty() ? warning.message : warning.file + ": " + warning.message);
+    const std::string message = without_dashes(warning.message);
+    warnings.append(warning.file.empty() ? message : warning.file + ": " + message);
   }
   d["warnings"] = warnings;
   return d;
@@ -212,6 +213,9 @@ py::dict build_terrain(const std::vector<std::string>& inputs, const std::string
 
 }  // namespace
 
+/// Removes what an interrupted build of `output` has left.
+void discard(const std::string& output) { Workspace::discard(FileLayer::system(), output); }
+
 void add_build(py::module_& module) {
   py::class_<ArraySource>(module, "ArraySource").def_property_readonly("name", &ArraySource::name);
   // The memory of an array is borrowed, so the array lives as long.
@@ -228,6 +232,7 @@ void add_build(py::module_& module) {
       }));
   module.def("build", build_terrain);
   module.def("build_options", list_of_options);
+  module.def("discard", discard);
 }
 
 }  // namespace ptin::python

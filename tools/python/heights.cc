@@ -8,13 +8,10 @@
 #include <limits>
 #include <vector>
 
-#include <cpl_error.h>
-#include <ogr_spatialref.h>
-
 #include "engine/crs/ground.h"
-#include "engine/error.h"
 #include "engine/stop.h"
 #include "tools/python/binding.h"
+#include "tools/python/other_crs.h"
 
 namespace ptin::python {
 
@@ -22,42 +19,6 @@ namespace {
 
 /// Fewer points are located in less time than a thread takes to start.
 constexpr std::size_t kFewPoints = 1000;
-
-/// Takes positions of another CRS to the terrain's; x is to the east in both. One that has no place
-/// there becomes NaN.
-/// @throws Error invalid_argument  GDAL does not know the CRS; the terrain's CRS is unknown
-/// @throws Error cancelled         a stop was requested
-void take_to_terrain(std::span<MapPoint> points, const std::string& crs, const OpenTerrain& t,
-                     const std::stop_token& stop) {
-  constexpr std::size_t kBetweenLooks = 100'000;
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-  const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
-  OGRSpatialReference from, to;
-  from.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  to.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  if (t.crs.wkt.empty() || to.SetFromUserInput(t.crs.wkt.c_str()) != OGRERR_NONE) {
-    refuse("the CRS of the terrain is unknown, so no positions of another one can be taken to it");
-  }
-  if (from.SetFromUserInput(crs.c_str()) != OGRERR_NONE) {
-    refuse("\"" + crs + "\" is no CRS that is known; give a code as EPSG:4326, or WKT", "crs");
-  }
-  const std::unique_ptr<OGRCoordinateTransformation> change(
-      OGRCreateCoordinateTransformation(&from, &to));
-  if (!change) refuse("no way is known from \"" + crs + "\" to the CRS of the terrain", "crs");
-  std::vector<double> x, y;
-  std::vector<int> is_done;
-  for (std::size_t first = 0; first < points.size(); first += kBetweenLooks) {
-    stop_if_asked(stop, "the question");
-    const auto some = points.subspan(first, std::min(kBetweenLooks, points.size() - first));
-    x.clear(), y.clear();
-    for (const MapPoint& p : some) x.push_back(p.x), y.push_back(p.y);
-    is_done.assign(some.size(), 0);
-    change->Transform(static_cast<int>(some.size()), x.data(), y.data(), nullptr, is_done.data());
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      some[i] = is_done[i] != 0 ? MapPoint{x[i], y[i]} : MapPoint{kNowhere, kNowhere};
-    }
-  }
-}
 
 /// False of a position that has NaN, as one that is missing has, or infinity.
 bool is_place(const MapPoint& p) noexcept { return std::isfinite(p.x) && std::isfinite(p.y); }
@@ -117,9 +78,10 @@ py::tuple locate_one(const OpenTerrain& t, MapPoint at, const LocateRequest& req
                         found.certified_error, found.certified_deviation, found.exact);
 }
 
-/// Heights at points, put where they belong. Of what is no place nothing is asked: it lies outside.
-LocateResult locate_all(const OpenTerrain& t, std::span<const MapPoint> points,
-                        const LocateRequest& request, const HeightPlaces& places) {
+/// Heights at some points, put from `first` on. Of what is no place nothing is asked: it lies outside.
+LocateResult locate_some(const OpenTerrain& t, std::span<const MapPoint> points,
+                         const LocateRequest& request, const HeightPlaces& places,
+                         std::size_t first) {
   std::vector<MapPoint> asked;
   const bool are_all = std::all_of(points.begin(), points.end(), is_place);
   if (!are_all) std::copy_if(points.begin(), points.end(), std::back_inserter(asked), is_place);
@@ -127,9 +89,25 @@ LocateResult locate_all(const OpenTerrain& t, std::span<const MapPoint> points,
       t.terrain.locate(are_all ? points : std::span<const MapPoint>(asked), request);
   std::size_t next = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    places.put(i, is_place(points[i]) ? found.points[next++] : LocatedPoint{});
+    places.put(first + i, is_place(points[i]) ? found.points[next++] : LocatedPoint{});
   }
   found.points = {};
+  return found;
+}
+
+/// Heights at all points. Millions are located in portions, as their sorting hears no stop. All portions
+/// are of one level of detail, so the certificate of one is that of all.
+LocateResult locate_all(const OpenTerrain& t, std::span<const MapPoint> points,
+                        const LocateRequest& request, const HeightPlaces& places) {
+  constexpr std::size_t kTogether = std::size_t{1} << 22;
+  LocateResult found;
+  std::size_t first = 0;
+  do {
+    stop_if_asked(request.limits.stop, "the question");
+    const auto some = points.subspan(first, std::min(kTogether, points.size() - first));
+    found = locate_some(t, some, request, places, first);
+    first += kTogether;
+  } while (first < points.size());
   return found;
 }
 
@@ -154,7 +132,13 @@ py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
   const auto work = [&] {
     if (!crs) return locate_all(t, points, request, places);
     std::vector<MapPoint> there(points.begin(), points.end());
-    take_to_terrain(there, *crs, t, stop.get_token());
+    const OtherCrs other(*crs, t);
+    // A stop is looked for so often that it is heard within a tenth of a second.
+    constexpr std::size_t kBetweenLooks = 100'000;
+    for (std::size_t first = 0; first < there.size(); first += kBetweenLooks) {
+      stop_if_asked(stop.get_token(), "the question");
+      other.take(std::span(there).subspan(first, std::min(kBetweenLooks, there.size() - first)));
+    }
     return locate_all(t, there, request, places);
   };
   LocateResult found;
@@ -224,9 +208,12 @@ py::tuple highest(const OpenTerrain& t, const RegionArgument& region, bool lowes
   for (const HeightAt& at : found.vertices) {
     vertices.insert(vertices.end(), {at.position.x, at.position.y, at.height});
   }
+  // Where nothing was found, nothing bounds it.
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const bool is_found = found.state == PointState::kSurface;
   return py::make_tuple(name_of(found.state), tuple_of(found.point), found.at_vertex,
-                        found.height_min, found.height_max, table_of(std::move(vertices), 3),
-                        certificate_of(found));
+                        is_found ? found.height_min : kNone, is_found ? found.height_max : kNone,
+                        table_of(std::move(vertices), 3), certificate_of(found));
 }
 
 }  // namespace

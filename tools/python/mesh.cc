@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include <unistd.h>
+
 #include "engine/error.h"
 #include "tools/export/tin_patch.h"
 #include "tools/python/binding.h"
@@ -90,12 +92,11 @@ MeshArrays mesh_of(const tools::TinPatch& patch) {
   return mesh;
 }
 
-/// The parts of a TIN, for a loop that asks for the next one. The terrain is walked on a thread of its
-/// own, which makes a part while the loop works on the one before.
-class PartIterator {
+/// A walk over the parts of a TIN, on a thread of its own, which makes a part while the loop works on
+/// the one before.
+class PartWalk {
  public:
-  PartIterator(std::shared_ptr<const OpenTerrain> t, const RegionArgument& region,
-               const Asked& asked)
+  PartWalk(std::shared_ptr<const OpenTerrain> t, const RegionArgument& region, const Asked& asked)
       : terrain_(std::move(t)) {
     asked.put(request_, stop_.get_token());
     request_.region = region_of(region);
@@ -107,7 +108,7 @@ class PartIterator {
     is_exact_ = parts_->detail().is_exact(terrain_->terrain.store().facts());
     walker_ = std::jthread([this] { walk(); });
   }
-  ~PartIterator() {
+  ~PartWalk() {
     if (is_ended_by_python()) {  // the GIL, once let go, could not be had again
       end();
       return;
@@ -116,8 +117,8 @@ class PartIterator {
     const py::gil_scoped_release release;
     end();
   }
-  PartIterator(const PartIterator&) = delete;
-  PartIterator& operator=(const PartIterator&) = delete;
+  PartWalk(const PartWalk&) = delete;
+  PartWalk& operator=(const PartWalk&) = delete;
 
   /// None after the last part.
   py::object next() {
@@ -189,6 +190,37 @@ class PartIterator {
   bool is_ready_ = false, is_done_ = false;
   std::exception_ptr failure_;
   std::jthread walker_;
+};
+
+/// The parts of a TIN, for a loop that asks for the next one.
+class PartIterator {
+ public:
+  PartIterator(std::shared_ptr<const OpenTerrain> t, const RegionArgument& region,
+               const Asked& asked)
+      : walk_(std::make_unique<PartWalk>(std::move(t), region, asked)) {}
+  ~PartIterator() {
+    // The child of a fork has no thread that walks, and locks that are never let go: the memory stays.
+    if (is_child()) (void)walk_.release();
+  }
+  PartIterator(const PartIterator&) = delete;
+  PartIterator& operator=(const PartIterator&) = delete;
+
+  /// None after the last part.
+  py::object next() {
+    if (is_child()) {
+      refuse(
+          "these parts were begun before the process forked, and go on in its parent; ask for "
+          "parts() in the child");
+    }
+    return walk_->next();
+  }
+  [[nodiscard]] py::tuple certificate() const { return walk_->certificate(); }
+
+ private:
+  [[nodiscard]] bool is_child() const { return process_ != getpid(); }
+
+  std::unique_ptr<PartWalk> walk_;
+  pid_t process_ = getpid();
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_ptin, module) {
   add_errors(module);
   add_questions(module);
   add_terrain(module);
+  add_places(module);
   add_heights(module);
   add_meshes(module);
   add_rasters(module);

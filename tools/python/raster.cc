@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Heights at pixels.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -65,6 +66,20 @@ RasterRequest pixels_of(const OpenTerrain& t, const std::optional<std::array<dou
   return tools::pixels_in(asked, side, t.terrain.store().facts());
 }
 
+/// @throws Error resource_exhausted  the system has not so much memory, whatever the limit
+py::array_t<double> new_array(const PixelRect& pixels) {
+  try {
+    return py::array_t<double>({pixels.height, pixels.width});
+  } catch (const py::error_already_set& raised) {
+    // NumPy says of what no address reaches that its shape is too big, by ValueError.
+    if (!raised.matches(PyExc_MemoryError) && !raised.matches(PyExc_ValueError)) throw;
+    throw Error(ErrorCode::resource_exhausted,
+                "the system has no memory for an array of " + std::to_string(pixels.width) + " x " +
+                    std::to_string(pixels.height) + " pixels: ask for fewer, or a smaller window",
+                "size");
+  }
+}
+
 py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>>& window,
                  const std::optional<Counts>& size, const std::optional<Pair>& pixel_size,
                  bool as_fine_as_pixels, const Asked& asked) {
@@ -76,7 +91,9 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
   if (pixels.width > INT32_MAX || pixels.height > INT32_MAX) {
     refuse("the raster would have more than 2^31 - 1 columns or rows", "size");
   }
-  const auto bytes = static_cast<std::uint64_t>(pixels.pixels()) * sizeof(double);
+  constexpr std::uint64_t kMostPixels = UINT64_MAX / sizeof(double);
+  const std::uint64_t bytes =
+      std::min(static_cast<std::uint64_t>(pixels.pixels()), kMostPixels) * sizeof(double);
   std::uint64_t& memory = request.limits.memory_bytes;
   if (bytes > memory) {
     throw Error(ErrorCode::resource_exhausted,
@@ -86,7 +103,7 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
                 "size");
   }
   memory -= bytes;  // What the question may take beside it.
-  py::array_t<double> heights({pixels.height, pixels.width});
+  py::array_t<double> heights = new_array(pixels);
   const std::span<double> places(heights.mutable_data(), static_cast<std::size_t>(pixels.pixels()));
   const RasterResult found = answer(t, stop, [&] { return t.terrain.raster(request, places); });
   const std::array<double, 6> g = tools::geotransform_of(request);

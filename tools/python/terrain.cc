@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Opening a terrain, and what is known of it without a question.
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <vector>
 
 #include "engine/crs/border_move.h"
@@ -15,12 +18,20 @@ namespace {
 
 /// Opens a file or an object elsewhere. Pages are read and not mapped: a file that is cut short is
 /// an error then and no signal, which a library may not take.
-std::shared_ptr<OpenTerrain> open(const std::string& name) {
+/// @param timeout  Seconds in which a silent server is given up, about; none: as RemoteOptions.
+std::shared_ptr<OpenTerrain> open(const std::string& name, std::optional<double> timeout) {
   std::stop_source waiting;
   return run_interruptibly(waiting, [&] {
     const bool is_elsewhere = is_remote(name);
     RemoteOptions options;
     options.stop = waiting.get_token();
+    if (timeout) {
+      // Each try may be silent for its share; curl takes whole seconds. The pauses between tries, each
+      // twice as long as the one before, are a quarter of that together.
+      const long share = std::max(1L, std::lround(*timeout / options.tries));
+      options.most_seconds_to_connect = options.most_silent_seconds = share;
+      options.first_pause = std::min(options.first_pause, *timeout / 60);
+    }
     Terrain terrain = is_elsewhere
                           ? Terrain(open_remote_store(name, options))
                           : Terrain::open(name, PageAccess::kPread, ReplacedFile::kAnswers);

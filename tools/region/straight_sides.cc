@@ -194,6 +194,9 @@ class Bender {
   std::vector<Added> added_;
 };
 
+/// Whether longitudes lie between -180 and 180, as they do where nobody says otherwise.
+bool is_plain(double from, double to) { return from >= -kHalfTurn && to <= kHalfTurn; }
+
 /// Takes out the jumps at the antimeridian, and brings the path into the turn of the circle that the
 /// bounds lie in.
 void turn(std::vector<MapPoint>& points, const SideTarget& target) {
@@ -205,9 +208,6 @@ void turn(std::vector<MapPoint>& points, const SideTarget& target) {
     high = std::max(high, points[i].x);
   }
   if (!bounds) return;
-  const auto is_plain = [](double from, double to) {
-    return from >= -kHalfTurn && to <= kHalfTurn;
-  };
   if (is_plain(low, high) && is_plain(bounds->min_x, bounds->max_x)) return;
   const double off = turns_towards((low + high) / 2, (bounds->min_x + bounds->max_x) / 2);
   for (MapPoint& p : points) p.x += off;
@@ -239,6 +239,11 @@ PlaceTransform places_by(OGRCoordinateTransformation& way) {
   };
 }
 
+bool has_degrees(const OGRSpatialReference& crs) {
+  constexpr double kDegree = 3.14159265358979323846 / 180, kSame = 1e-12;
+  return crs.IsGeographic() != 0 && std::abs(crs.GetAngularUnits() - kDegree) < kSame;
+}
+
 SideTarget side_target(const StoreFacts& facts, double turn) {
   const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
   const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
@@ -257,6 +262,16 @@ SideTarget side_target(const StoreFacts& facts, double turn) {
   target.turn = turn;
   if (turn > 0) target.bounds = Window{low.x, low.y, high.x, high.y};
   return target;
+}
+
+void turn_to_bounds(std::span<MapPoint> places, const SideTarget& target) {
+  const std::optional<Window>& bounds = target.bounds;
+  if (!bounds) return;
+  const bool are_bounds_plain = is_plain(bounds->min_x, bounds->max_x);
+  for (MapPoint& p : places) {
+    if (are_bounds_plain && is_plain(p.x, p.x)) continue;
+    p.x += turns_towards(p.x, (bounds->min_x + bounds->max_x) / 2);
+  }
 }
 
 std::vector<MapPoint> transformed_sides(std::span<const MapPoint> path,

@@ -13,6 +13,7 @@
 #include "engine/query/questions.h"
 
 class OGRCoordinateTransformation;
+class OGRSpatialReference;
 
 namespace ptin::tools {
 
@@ -20,6 +21,9 @@ namespace ptin::tools {
 using PlaceTransform = std::function<void(std::span<MapPoint>)>;
 /// The transformation that GDAL makes. `way` outlives it.
 [[nodiscard]] PlaceTransform places_by(OGRCoordinateTransformation& way);
+
+/// Whether x of a CRS is a longitude in degrees.
+[[nodiscard]] bool has_degrees(const OGRSpatialReference& crs);
 
 /// The place that transformed sides go to.
 struct SideTarget {
@@ -52,6 +56,9 @@ struct SideTarget {
 [[nodiscard]] std::vector<MapPoint> transformed_sides(std::span<const MapPoint> path,
                                                       const PlaceTransform& transform,
                                                       const SideTarget& target);
+
+/// Brings places, each for itself, into the turn of the circle that the target's bounds lie in.
+void turn_to_bounds(std::span<MapPoint> places, const SideTarget& target);
 
 /// The transformation of a geometry of another CRS.
 struct Transformed {

@@ -117,12 +117,6 @@ void bring_into_terrain(OGRFeature& feature, OGRCoordinateTransformation& way,
   }
 }
 
-/// Whether x of a CRS is a longitude in degrees.
-bool has_degrees(const OGRSpatialReference& crs) {
-  constexpr double kDegree = 3.14159265358979323846 / 180, kSame = 1e-12;
-  return crs.IsGeographic() != 0 && std::abs(crs.GetAngularUnits() - kDegree) < kSame;
-}
-
 /// The first bytes of a file, enough to tell WKT from other things.
 std::string first_bytes(std::ifstream& in) {
   std::string start(kLongestWord, '\0');

@@ -82,7 +82,14 @@ void warn_of_vertical_items(GDALDataset& data, const std::string& path, SourceWa
   }
 }
 
-constexpr std::array<double, 6> kIdentity{0, 1, 0, 0, 0, 1};
+/// Whether a geotransform is stated. The identity means none where GDAL's drivers fill it in; a VRT has the one that is
+/// written in it, or none.
+bool has_geotransform(GDALDataset& data, std::array<double, 6>& t) {
+  constexpr std::array<double, 6> kIdentity{0, 1, 0, 0, 0, 1};
+  if (data.GetGeoTransform(t.data()) != CE_None) return false;
+  const GDALDriver* const driver = data.GetDriver();
+  return t != kIdentity || (driver != nullptr && EQUAL(driver->GetDescription(), "VRT"));
+}
 
 /// Refuses a raster without a geotransform that is placed otherwise, or that names a CRS; warns of any
 /// other, which lies nowhere.
@@ -238,7 +245,7 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
   const OGRSpatialReference* srs = data.GetSpatialRef();
   const bool has_crs = srs != nullptr && !srs->IsEmpty();
   std::array<double, 6> t{};
-  if (data.GetGeoTransform(t.data()) != CE_None || t == kIdentity) {
+  if (!has_geotransform(data, t)) {
     describe_no_place(data, path, has_crs, warnings);
   } else {
     set_map(t, path, shape);

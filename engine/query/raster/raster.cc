@@ -100,9 +100,22 @@ class RasterReading {
     work_in_parts(all, [&](const PixelRect& some) { return hand_over(some, receive); });
   }
 
+  /// Samples some rows at a time, so that a stop is heard within a fraction of a second and progress
+  /// is told.
   void fill(std::span<double> heights, std::span<PointState> states) {
-    sample(request_.pixels, {heights, states});
-    tell_progress(request_.pixels.pixels());
+    constexpr std::int64_t kPixelsTogether = std::int64_t{1} << 22;
+    PixelRect rows = request_.pixels;
+    const std::int64_t end = rows.row + rows.height;
+    const std::int64_t most_rows = std::max<std::int64_t>(1, kPixelsTogether / rows.width);
+    for (; rows.row < end; rows.row += most_rows) {
+      rows.height = std::min(most_rows, end - rows.row);
+      const auto first = static_cast<std::size_t>((rows.row - request_.pixels.row) * rows.width);
+      const auto count = static_cast<std::size_t>(rows.pixels());
+      context_.check_stop();
+      sample(rows, {heights.subspan(first, count),
+                    states.empty() ? states : states.subspan(first, count)});
+      tell_progress(rows.pixels());
+    }
   }
 
   RasterResult result() {

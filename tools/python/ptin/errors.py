@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import errno
+
 
 class Error(Exception):
     """An error of the engine: one sentence that says what is wrong, what was expected and what to do.
@@ -16,6 +18,9 @@ class Error(Exception):
     code: str = "internal"
     message: str = ""
     context: str = ""
+
+    def __str__(self) -> str:  # OSError would say it otherwise where it has a file name
+        return str(self.args[0]) if self.args else self.message
 
 
 class InvalidArgument(Error, ValueError):
@@ -70,4 +75,6 @@ def _error_of(code: str, message: str, context: str) -> Error:
     """The exception for an error of the engine; the extension module raises it."""
     error = _BY_CODE.get(code, Error)(f"{context}: {message}" if context else message)
     error.code, error.message, error.context = code, message, context
+    if isinstance(error, NotFound):
+        error.errno, error.filename = errno.ENOENT, context or None
     return error

@@ -65,6 +65,9 @@ class LinePlace(NamedTuple):
 class Certified:
     """What every answer says of itself.
 
+    Positions are those of the file: points of a source without a grid were rounded to them, by
+    ``Report.largest_shift`` at most.
+
     Attributes:
         certified_error: How far the answer is off at an input sample, at most.
         certified_deviation: How far the answer is off at any point, at most.
@@ -163,11 +166,21 @@ class Raster(Certified):
     def __iter__(self) -> Iterator[Any]:
         return iter((self.array, self.transform, self.crs))
 
+    def to_xarray(self) -> Any:
+        """A DataArray with the coordinates ``y`` and ``x`` of the centres of pixels. Needs xarray."""
+        import xarray
+
+        rows, columns = self.array.shape
+        a, _, c, _, e, f = self.transform
+        coords = {"y": f + e * (np.arange(rows) + 0.5), "x": c + a * (np.arange(columns) + 0.5)}
+        return xarray.DataArray(self.array, coords, ("y", "x"), name="height", attrs={"crs": self.crs})
+
 
 @dataclass(eq=False)
 class Isolines(Certified):
     """Isolines, from :meth:`Terrain.isolines`. Higher ground lies to the right of each. Line ``i`` is
-    ``coords[offsets[i]:offsets[i + 1]]``, as GeoArrow and ``shapely.from_ragged_array`` have lines.
+    ``coords[offsets[i]:offsets[i + 1]]``, as GeoArrow and ``shapely.from_ragged_array`` have lines. At the exact height
+    of a vertex lines may touch themselves and each other there.
 
     Attributes:
         coords: (P, 2) float64, map units.
@@ -221,8 +234,8 @@ class Highest(Certified):
         state: ``"surface"``; ``"outside"`` or ``"void"`` where there is no point.
         point: The highest point of the surface in the region; None where there is none.
         at_vertex: False: on the region's border.
-        height_min: The source's highest is no lower.
-        height_max: The source's highest is no higher.
+        height_min: The source's highest is no lower; NaN where nothing was found.
+        height_max: The source's highest is no higher, likewise.
         vertices: (K, 3) float64: x, y and height of the highest vertices, falling.
     """
 

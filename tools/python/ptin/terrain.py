@@ -6,6 +6,7 @@ from __future__ import annotations
 import numbers
 import os
 import re
+import warnings
 from typing import Any, Iterable, Iterator, Optional, Sequence, Union, overload
 
 import numpy as np
@@ -57,23 +58,78 @@ def _bytes(memory: Memory) -> Optional[int]:
 
 
 def _crs(crs: Any) -> Optional[str]:
-    """A CRS as text: of a text itself, of what pyproj, rasterio and geopandas have its WKT, of a number EPSG's."""
+    """A CRS as text: of a text itself, of what pyproj, rasterio, geopandas and GDAL have its WKT, of a number EPSG's."""
     if crs is None or isinstance(crs, str):
         return crs
-    return f"EPSG:{int(crs)}" if isinstance(crs, numbers.Integral) else str(crs.to_wkt())
+    if isinstance(crs, numbers.Integral) and not isinstance(crs, bool):
+        return f"EPSG:{int(crs)}"
+    to_wkt = getattr(crs, "to_wkt", None) or getattr(crs, "ExportToWkt", None)
+    if to_wkt is None:
+        raise InvalidArgument(f"a CRS is text, an EPSG number, or what has to_wkt() as pyproj.CRS has; this is {crs!r}")
+    return str(to_wkt())
+
+
+def _whole(name: str, number: Any) -> Any:
+    """A whole number that is asked for, from 0 on; None passes."""
+    if number is None:
+        return None
+    is_number = isinstance(number, numbers.Real) and not isinstance(number, bool)
+    if not is_number or not 0 <= number < 2**63 or int(number) != number:
+        raise InvalidArgument(f"{name} is a whole number, 0 or above, and not {number!r}")
+    return int(number)
+
+
+def _corners(points: Any) -> npt.NDArray[np.float64]:
+    """The corners of a line or a ring: (N, 2); a third column, heights, is left out."""
+    if isinstance(points, np.ma.MaskedArray) and np.ma.is_masked(points):
+        raise InvalidArgument("corners of a line or a polygon are masked; leave them out")
+    try:
+        corners = np.asarray(points, dtype=float)
+    except (TypeError, ValueError):
+        corners = np.empty(0)
+    if corners.ndim != 2 or corners.shape[1] not in (2, 3):
+        raise InvalidArgument("corners of a line or a polygon are an array of shape (N, 2)")
+    return corners[:, :2]
+
+
+def _line(line: Any) -> npt.NDArray[np.float64]:
+    shape = getattr(line, "__geo_interface__", line)
+    if isinstance(shape, dict) and shape.get("type") != "LineString":
+        raise InvalidArgument(f"a line is a LineString or an array of shape (N, 2), and this is a {shape.get('type')}")
+    return _corners(shape["coordinates"] if isinstance(shape, dict) else shape)
+
+
+def _geometries(shape: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """The polygons of GeoJSON, as it is in a file or in ``__geo_interface__``."""
+    kind = shape.get("type")
+    if kind in ("Polygon", "MultiPolygon"):
+        yield shape
+    elif kind == "Feature" and shape.get("geometry"):
+        yield from _geometries(shape["geometry"])
+    elif kind in ("FeatureCollection", "GeometryCollection"):
+        for part in shape["features" if kind == "FeatureCollection" else "geometries"]:
+            yield from _geometries(part)
+    else:
+        raise InvalidArgument(f"a polygon is wanted, and this is a {kind}")
 
 
 def _rings(polygon: Any) -> list[npt.NDArray[np.float64]]:
     """The rings of a polygon, in any order: borders and holes are told apart by lying in each other."""
     shape = getattr(polygon, "__geo_interface__", polygon)
-    if isinstance(shape, dict):
-        parts = {"Polygon": [shape["coordinates"]], "MultiPolygon": shape["coordinates"]}.get(shape["type"])
-        if parts is None:
-            raise InvalidArgument(f"a polygon is wanted, and this is a {shape['type']}")
-        return [np.asarray(ring, dtype=float)[:, :2] for part in parts for ring in part]
-    if len(shape) > 0 and np.ndim(shape[0]) == 1:
-        return [np.asarray(shape, dtype=float)]
-    return [np.asarray(ring, dtype=float) for ring in shape]
+    if not isinstance(shape, dict):
+        is_ring = len(shape) > 0 and np.ndim(shape[0]) == 1
+        return [_corners(ring) for ring in ([shape] if is_ring else shape)]
+    if shape.get("type") == "MultiPolygon" and getattr(polygon, "is_valid", True) is False:
+        raise InvalidArgument("this MultiPolygon is not valid, as where its parts overlap; use shapely.make_valid()")
+    parts = list(_geometries(shape))
+    if len(parts) > 1:  # which may overlap, and then do not exclude each other
+        from shapely.geometry import shape as shaped
+        from shapely.ops import unary_union
+
+        return _rings(unary_union([shaped(part) for part in parts]))
+    (part,) = parts or [{"type": "MultiPolygon", "coordinates": []}]
+    polygons = [part["coordinates"]] if part["type"] == "Polygon" else part["coordinates"]
+    return [_corners(ring) for rings in polygons for ring in rings if len(ring) > 0]
 
 
 def _window(window: Sequence[float]) -> tuple[float, ...]:
@@ -83,14 +139,6 @@ def _window(window: Sequence[float]) -> tuple[float, ...]:
     return tuple(map(float, window))
 
 
-def _region(window: Window, polygon: Any) -> Any:
-    if polygon is None:
-        return None if window is None else _window(window)
-    if window is not None:
-        raise InvalidArgument("a region is a window or a polygon; leave one out")
-    return _rings(polygon)
-
-
 def _end(end: Sequence[float]) -> tuple[float, float, float]:
     """An end of a line of sight; two numbers are one 2 above ground."""
     x, y, *height = map(float, end)
@@ -98,20 +146,36 @@ def _end(end: Sequence[float]) -> tuple[float, float, float]:
 
 
 def _pair(size: Any) -> Any:
-    return None if size is None else (size, size) if np.ndim(size) == 0 else tuple(size)
+    """The sides of a pixel; of one number both."""
+    if size is None:
+        return None
+    pair = np.asarray(size)
+    if pair.shape not in ((), (2,)) or pair.dtype.kind not in "iuf":
+        raise InvalidArgument(f"a pixel_size is a number, or width and height, and not {size!r}")
+    return tuple(float(side) for side in np.broadcast_to(pair, 2))
+
+
+def _counts(size: Any) -> Any:
+    if size is None:
+        return None
+    if np.shape(size) != (2,):
+        raise InvalidArgument(f"a size is columns and rows, two numbers, and not {size!r}")
+    return tuple(_whole("each of size", count) for count in size)
 
 
 def _place(place: Any) -> Optional[LinePlace]:
     return None if place is None else LinePlace(*place)
 
 
-def open(path: Path, memory: Memory = None) -> Terrain:
+def open(path: Path, memory: Memory = None, timeout: Optional[float] = None) -> Terrain:
     """Opens a terrain: a ``.ptin`` file, or one elsewhere.
 
     Args:
         path: A path, or a URL (``https://``, ``s3://``, ``gs://``, ``az://``) or a name of GDAL's (``/vsi...``).
         memory: Most bytes that a question may take, with the array of a raster, or a text as ``"2G"``; None: 4 GiB,
             and 1 GiB a part of :meth:`Terrain.parts`. A question that needs more raises ResourceExhausted.
+        timeout: Of what lies elsewhere: seconds, about, in which a silent server becomes an IoError. It is asked five
+            times meanwhile; None: each time 30.
 
     Raises:
         NotFound, Corruption, UnsupportedVersion, IoError.
@@ -120,7 +184,7 @@ def open(path: Path, memory: Memory = None) -> Terrain:
     ...     t.crs, t.samples, t.vertices
     ('EPSG:32611', 66049, 66049)
     """
-    return Terrain(path, memory)
+    return Terrain(path, memory, timeout)
 
 
 class Terrain:
@@ -129,17 +193,23 @@ class Terrain:
 
     Of each question ``error`` is the certified error allowed, in the height's unit, 0 too; None: the full TIN. Instead
     of an error ``vertices=N`` asks for the TIN of the terrain's N most important vertices. ``window`` is ``(xmin, ymin,
-    xmax, ymax)`` in map units; ``polygon`` a shapely geometry, anything with ``__geo_interface__``, an (N, 2) array or
-    a list of those, the rings.
+    xmax, ymax)`` in map units; ``polygon`` a shapely or geopandas geometry, anything with ``__geo_interface__``, an
+    (N, 2) array or a list of those, the rings, or as text a vector file or WKT, as ``ptin --polygon`` takes it. ``crs``
+    is that of the window, polygon or line where it is not the terrain's (files and geopandas have their own): sides are
+    straight there, and kept within a hundredth of the distance between samples. Where a region misses the terrain, a
+    warning says so.
 
     Questions release the GIL and may be asked by several threads at once. Ctrl-C ends that of the main thread, as a
     rule within a tenth of a second; the end of Python ends those of daemon threads, by SystemExit. Each raises
     InvalidArgument, ResourceExhausted, Corruption or IoError.
     """
 
-    def __init__(self, path: Path, memory: Memory = None) -> None:
+    def __init__(self, path: Path, memory: Memory = None, timeout: Optional[float] = None) -> None:
         name = os.fsdecode(path)
-        self._opened: Any = _ptin.open(name)
+        if timeout is not None and not (isinstance(timeout, numbers.Real) and timeout > 0):
+            raise InvalidArgument(f"a timeout is seconds, above 0, and not {timeout!r}")
+        self._timeout = timeout
+        self._opened: Any = _ptin.open(name, timeout)
         self._pid = os.getpid()
         self._name = name if "://" in name or name.startswith("/vsi") else os.path.abspath(name)
         self._memory = _bytes(memory)
@@ -150,15 +220,52 @@ class Terrain:
             raise ValueError("this terrain is closed")
         if self._pid != os.getpid():  # a fork: connections and locks are the parent's
             _ptin.never_close(self._opened)
-            self._opened, self._pid = _ptin.open(self._name), os.getpid()
+            self._opened, self._pid = _ptin.open(self._name, self._timeout), os.getpid()
         if self._opened.is_stopped:  # by Ctrl-C, while it waited for a server
-            self._opened = _ptin.open(self._name)
+            self._opened = _ptin.open(self._name, self._timeout)
         return self._opened
 
     def _asked(self, error: Optional[float], vertices: Optional[int], memory: Memory = None) -> Any:
         if error is not None and (isinstance(error, (str, bytes)) or np.ndim(error) != 0):
             raise TypeError(f"an error is a number, in the unit of heights, and not {error!r}")
-        return _ptin.Asked(error, vertices, self._memory if memory is None else _bytes(memory))
+        limit = self._memory if memory is None else _bytes(memory)
+        return _ptin.Asked(error, _whole("vertices", vertices), limit)
+
+    def _region(self, window: Window, polygon: Any, crs: Any = None) -> Any:
+        """The region of a question, in the terrain's CRS."""
+        if polygon is not None and window is not None:
+            raise InvalidArgument("a region is a window or a polygon; leave one out")
+        is_text = isinstance(polygon, (str, os.PathLike))
+        if crs is not None and (is_text or (window is None and polygon is None)):
+            raise InvalidArgument("a crs is that of a window or polygon that is given by numbers; leave it out")
+        if window is None and polygon is None:
+            return None
+        region: Any = None
+        if is_text:
+            region = _ptin.rings_of_file(self._terrain, os.fspath(polygon))
+        elif polygon is not None:
+            region = _rings(polygon)
+            crs = getattr(polygon, "crs", None) if crs is None and self.crs else crs
+        else:
+            region = _window(() if window is None else window)
+            if crs is not None:
+                xmin, ymin, xmax, ymax = region
+                region = [np.array([(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax)])]
+        if crs is not None:
+            closed = [np.concatenate([ring, ring[:1]]) for ring in region]
+            region = [ring[:-1] for ring in _ptin.paths_of_crs(self._terrain, closed, _crs(crs))]
+        self._warn_of_miss(region if isinstance(region, list) else [np.reshape(region, (2, 2))])
+        return region
+
+    def _warn_of_miss(self, rings: Sequence[npt.NDArray[np.float64]]) -> None:
+        """Warns where the box of a region misses that of the terrain: numbers of another CRS, as a rule."""
+        corners = np.concatenate([*rings, np.empty((0, 2))])
+        if len(corners) == 0:
+            return
+        (xmin, ymin), (xmax, ymax), bounds = corners.min(axis=0), corners.max(axis=0), self.bounds
+        if xmax < bounds[0] or ymax < bounds[1] or xmin > bounds[2] or ymin > bounds[3]:
+            why = _ptin.why_missed(self._terrain, corners)
+            warnings.warn(f"the region misses the terrain, which has {why}", stacklevel=4)
 
     def close(self) -> None:
         """Closes the file; questions that are being answered end as if it were open."""
@@ -173,7 +280,7 @@ class Terrain:
         self.close()
 
     def __reduce__(self) -> Any:
-        return (Terrain, (self._name, self._memory))
+        return (Terrain, (self._name, self._memory, self._timeout))
 
     def __repr__(self) -> str:
         return f"ptin.open({self._name!r})" + (" (closed)" if self._opened is None else "")
@@ -298,19 +405,23 @@ class Terrain:
         error: Optional[float] = None,
         stations: Optional[float] = None,
         vertices: Optional[int] = None,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Profile:
         """Heights along a line, with a break at every edge of the TIN that it crosses.
 
         Args:
-            line: (N, 2) map units.
+            line: (N, 2) map units, or a shapely LineString.
             stations: Beside the breaks, heights at equal distances: map units, in degrees metres.
 
         >>> distance, xy, z, state = t.profile([[377000, 3804000], [378000, 3804000]], stations=100)
         >>> float(distance[-1]), xy.shape == (len(z), 2)
         (1000.0, True)
         """
-        answer = _ptin.profile(self._terrain, line, stations, self._asked(error, vertices, memory))
+        corners = _line(line)
+        if crs is not None:
+            (corners,) = _ptin.paths_of_crs(self._terrain, [corners], _crs(crs))
+        answer = _ptin.profile(self._terrain, corners, stations, self._asked(error, vertices, memory))
         distance, xy, z, state, station, certificate = answer
         return Profile(*certificate, distance, xy, z, state, station.view(np.bool_))
 
@@ -322,6 +433,7 @@ class Terrain:
         clip: bool = False,
         polygon: Any = None,
         triangles: Optional[int] = None,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Mesh:
         """The TIN at a level of detail, as arrays that trimesh, meshio and PyVista take.
@@ -338,7 +450,9 @@ class Terrain:
         (3, 3, dtype('int32'))
         """
         asked = self._asked(error, vertices, memory)
-        vertex_array, faces, certificate = _ptin.refine(self._terrain, _region(window, polygon), clip, triangles, asked)
+        region = self._region(window, polygon, crs)
+        most = _whole("triangles", triangles)
+        vertex_array, faces, certificate = _ptin.refine(self._terrain, region, clip, most, asked)
         return Mesh(*certificate, vertex_array, faces)
 
     def parts(
@@ -347,6 +461,7 @@ class Terrain:
         vertices: Optional[int] = None,
         window: Window = None,
         polygon: Any = None,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Iterator[Mesh]:
         """The TIN at a level of detail in parts that together have each triangle once: for terrains larger than memory.
@@ -362,7 +477,7 @@ class Terrain:
         True
         """
         asked = self._asked(error, vertices, memory)
-        parts = _ptin.Parts(self._terrain, _region(window, polygon), asked)
+        parts = _ptin.Parts(self._terrain, self._region(window, polygon, crs), asked)
         return self._each(parts)
 
     @staticmethod
@@ -398,7 +513,9 @@ class Terrain:
             raise InvalidArgument(f'an error is a number, None or "pixels", and not "{error}"')
         is_fine = error == "pixels" and vertices is None
         asked = self._asked(None if isinstance(error, str) else error, vertices, memory)
-        answer = _ptin.raster(self._terrain, _region(window, None), size, _pair(pixel_size), is_fine, asked)
+        answer = _ptin.raster(
+            self._terrain, self._region(window, None), _counts(size), _pair(pixel_size), is_fine, asked
+        )
         array, transform, certificate = answer
         return Raster(*certificate, array, Transform(*transform), self.crs)
 
@@ -411,6 +528,7 @@ class Terrain:
         vertices: Optional[int] = None,
         polygon: Any = None,
         base: float = 0.0,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Isolines:
         """Isolines, joined over the whole terrain and cut at the region.
@@ -425,9 +543,11 @@ class Terrain:
         """
         if (interval is None) == (levels is None):
             raise InvalidArgument("isolines have an interval or levels; give one of them")
-        heights = [] if levels is None else [float(level) for level in np.ravel(np.asarray(levels))]
+        if levels is not None and not hasattr(levels, "__len__") and hasattr(levels, "__iter__"):
+            levels = list(levels)
+        heights = [] if levels is None else [float(level) for level in np.ma.ravel(levels).compressed()]
         asked = self._asked(error, vertices, memory)
-        answer = _ptin.isolines(self._terrain, heights, interval, base, _region(window, polygon), asked)
+        answer = _ptin.isolines(self._terrain, heights, interval, base, self._region(window, polygon, crs), asked)
         coords, offsets, level, ring, certificate = answer
         return Isolines(*certificate, coords, offsets, level, ring.view(np.bool_), self.crs)
 
@@ -439,6 +559,7 @@ class Terrain:
         listed: int = 1,
         error: Optional[float] = None,
         vertices: Optional[int] = None,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Highest:
         """The highest point of the terrain or of a region.
@@ -451,7 +572,8 @@ class Terrain:
         1576.0
         """
         asked = self._asked(error, vertices, memory)
-        answer = _ptin.highest(self._terrain, _region(window, polygon), lowest, listed, asked)
+        most = min(_whole("listed", listed), 2**32 - 1)
+        answer = _ptin.highest(self._terrain, self._region(window, polygon, crs), lowest, most, asked)
         state, point, at_vertex, low, high, vertex_array, certificate = answer
         place = Place(*point) if state == "surface" else None
         return Highest(*certificate, state, place, at_vertex, low, high, vertex_array)
@@ -484,7 +606,8 @@ class Terrain:
         'hidden'
         """
         asked = self._asked(error, vertices, memory)
-        answer = _ptin.sight(self._terrain, _end(a), _end(b), absolute, verdict, curvature, frequency, budget, asked)
+        stars = _whole("budget", budget)
+        answer = _ptin.sight(self._terrain, _end(a), _end(b), absolute, verdict, curvature, frequency, stars, asked)
         told, ends, length, obstruction, at, low, high, void_length, ratio, fresnel, deviation, exact = answer
         clearance = Clearance(low, high, _place(at))
         return Sight(
@@ -542,6 +665,7 @@ class Terrain:
         error: Optional[float] = None,
         vertices: Optional[int] = None,
         threads: int = 0,
+        crs: Any = None,
         memory: Memory = None,
     ) -> Any:
         """Volumes over and under a level, or between two terrains.
@@ -557,11 +681,13 @@ class Terrain:
         """
         if isinstance(against, (str, os.PathLike)):
             with Terrain(against, self._memory) as other:
-                return self.volume(level, other, window, polygon, error, vertices, threads, memory)
+                return self.volume(level, other, window, polygon, error, vertices, threads, crs, memory)
         levels = [float(one) for one in np.ravel(np.asarray(level))]
         other_terrain = None if against is None else against._terrain
         asked = self._asked(error, vertices, memory)
-        answer = _ptin.volumes(self._terrain, levels, other_terrain, _region(window, polygon), threads, asked)
+        answer = _ptin.volumes(
+            self._terrain, levels, other_terrain, self._region(window, polygon, crs), _whole("threads", threads), asked
+        )
         asked_levels = levels if against is None else [None]
         volumes = [self._volume(one, told) for one, told in zip(asked_levels, answer)]
         return volumes[0] if against is not None or np.ndim(level) == 0 else volumes
