@@ -55,4 +55,13 @@ std::array<double, 2> border_reach(const StoreFile& store, double certified_erro
   return reach;
 }
 
+double most_error_for_pixels(const std::array<double, 2>& reach_of_one, double width,
+                             double height) noexcept {
+  constexpr double kShareOfPixel = 0.25;
+  const auto error = [](double of_one, double side) {
+    return of_one > 0.0 && of_one < kInfinity ? kShareOfPixel * side / of_one : kInfinity;
+  };
+  return std::min(error(reach_of_one[0], width), error(reach_of_one[1], height));
+}
+
 }  // namespace ptin

@@ -29,4 +29,12 @@ namespace ptin {
 /// @throws Error as border_moved_at_most()
 [[nodiscard]] std::array<double, 2> border_reach(const StoreFile& store, double certified_error);
 
+/// The greatest error of heights that are looked at in pixels: the border stays within a quarter of a
+/// pixel. Small voids grow by as much on all sides, and with a whole pixel would meet. Infinite where
+/// nothing moves the border, and where nothing bounds how far it moves.
+/// @param reach_of_one   border_reach() of an error of 1.
+/// @param width, height  Of a pixel, map units.
+[[nodiscard]] double most_error_for_pixels(const std::array<double, 2>& reach_of_one, double width,
+                                           double height) noexcept;
+
 }  // namespace ptin

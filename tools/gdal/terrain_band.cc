@@ -172,7 +172,7 @@ RasterRequest TerrainBand::request_for(const Part& part, int columns, int rows) 
   lattice.step_x *= times_wide;
   lattice.step_y *= times_high;
   request.pixels = {0, 0, columns, rows};
-  request.detail = dataset_.detail_for_pixels(std::abs(lattice.step_x * lattice.step_y));
+  request.detail = dataset_.detail_for_pixels(std::abs(lattice.step_x), std::abs(lattice.step_y));
   request.heights = dataset_.options().content.value == PixelValue::kHeight;
   request.normals = !request.heights;
   return request;

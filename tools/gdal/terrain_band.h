@@ -35,6 +35,8 @@ class TerrainBand final : public GDALRasterBand {
   CPLErr ComputeStatistics(int is_approximate, double* min, double* max, double* mean,
                            double* deviation, GDALProgressFunc progress, void* data) override;
   const char* GetUnitType() override { return unit_.c_str(); }
+  /// As elevation models have it: gdalbuildvrt joins what is of one kind.
+  GDALColorInterp GetColorInterpretation() override { return GCI_GrayIndex; }
   int HasArbitraryOverviews() override { return TRUE; }
   /// GDAL asks for sizes, too: gdalwarp chooses among overviews.
   int GetOverviewCount() override { return static_cast<int>(overviews_.size()); }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/crs/border_move.h"
 #include "engine/error.h"
 #include "engine/remote/remote_file.h"
 #include "tools/export/pixel_grid.h"
@@ -62,6 +63,7 @@ TerrainDataset::TerrainDataset(const GDALOpenInfo& info)
       crs_(crs_facts(terrain_.store())),
       options_(open_options_of(info.papszOpenOptions)),
       own_pixel_(own_pixel_for(terrain_.store(), bounds())),
+      border_reach_(border_reach(terrain_.store(), 1.0)),
       pixels_(pixels_of(facts(), own_pixel_, options_)),
       srs_(new OGRSpatialReference) {
   srs_->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -74,9 +76,11 @@ TerrainDataset::TerrainDataset(const GDALOpenInfo& info)
   pixels_.limits.memory_bytes = options_.memory_bytes;
   eAccess = GA_ReadOnly;
   SetDescription(info.pszFilename);
-  SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_POINT);
-  SetMetadataItem("PTIN_SAMPLES", std::to_string(facts().source_samples).c_str());
-  if ((info.nOpenFlags & GDAL_OF_RASTER) != 0) SetBand(1, new TerrainBand(*this));
+  SetMetadataItem("SAMPLES", std::to_string(facts().source_samples).c_str(), kOwnDomain);
+  if ((info.nOpenFlags & GDAL_OF_RASTER) != 0) {
+    SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_POINT);
+    SetBand(1, new TerrainBand(*this));
+  }
   if ((info.nOpenFlags & GDAL_OF_VECTOR) == 0) return;
   layers_.push_back(std::make_unique<TriangleLayer>(*this));
   if (options_.interval) layers_.push_back(std::make_unique<IsolineLayer>(*this));
@@ -96,18 +100,19 @@ Window TerrainDataset::bounds() const noexcept {
   return {low.x, low.y, high.x, high.y};
 }
 
-DetailRequest TerrainDataset::detail_for_pixels(double area) const {
+DetailRequest TerrainDataset::detail_for_pixels(double width, double height) const {
   DetailRequest detail;
   if (options_.error) {
     if (*options_.error > 0) detail.tolerance = options_.error;
     return detail;
   }
-  const double samples = area / (own_pixel_[0] * own_pixel_[1]);  // of a pixel
+  const double samples = width * height / (own_pixel_[0] * own_pixel_[1]);  // of a pixel
   if (samples < 1 + 1e-9) return detail;
   // The index is not asked about the window of the whole terrain, for which this is exact.
   const double vertices = static_cast<double>(facts().source_samples) / samples;
   IoCounters io;
-  return detail_for(terrain_.store(), static_cast<std::uint64_t>(vertices) + 1, bounds(), io);
+  return detail_for(terrain_.store(), static_cast<std::uint64_t>(vertices) + 1, bounds(), io,
+                    most_error_for_pixels(border_reach_, width, height));
 }
 
 Certificate TerrainDataset::certificate_of(const DetailRequest& detail) const {

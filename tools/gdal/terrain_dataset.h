@@ -40,9 +40,9 @@ class TerrainDataset final : public DatasetFace {
   /// The box of the samples, map units.
   [[nodiscard]] Window bounds() const noexcept;
 
-  /// The TIN for pixels of an area, square map units. It is the same for all windows, so that blocks of
-  /// a raster fit together.
-  [[nodiscard]] DetailRequest detail_for_pixels(double area) const;
+  /// The TIN for pixels of a width and a height, map units: of as many vertices, and borders of voids within
+  /// a quarter of a pixel. It is the same for all windows, so that blocks of a raster fit together.
+  [[nodiscard]] DetailRequest detail_for_pixels(double width, double height) const;
   /// How far the TIN at a level can be from the source. `detail` names no number of vertices.
   [[nodiscard]] Certificate certificate_of(const DetailRequest& detail) const;
 
@@ -59,6 +59,8 @@ class TerrainDataset final : public DatasetFace {
   CrsFacts crs_;
   OpenOptions options_;
   std::array<double, 2> own_pixel_;  ///< Width and height of a pixel that has one sample, about.
+  std::array<double, 2>
+      border_reach_;  ///< How far an error of 1 moves borders of voids, map units.
   RasterRequest pixels_;
   /// The CRS counts who holds it, and outlives the dataset where layers or geometries handed it out.
   std::unique_ptr<OGRSpatialReference, ReleaseSrs> srs_;

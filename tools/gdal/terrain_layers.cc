@@ -2,6 +2,9 @@
 #include "tools/gdal/terrain_layers.h"
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -13,8 +16,13 @@ namespace ptin::tools {
 
 namespace {
 
-/// About how many vertices meet the filter of a layer of triangles: a map shows no more.
+/// About how many vertices the layer of triangles has without ERROR: a map shows no more.
 constexpr std::uint64_t kVerticesOfLayer = 50'000;
+/// A cell of isolines has a record for so many bytes of MEMORY_MB, at most: 16 million by default, whose
+/// lines take a second or two.
+constexpr std::uint64_t kBytesOfRecord = 64;
+/// A line's number within its cell has so many bits.
+constexpr int kBitsOfLine = 32;
 
 /// How many thirds of a grid unit, where centres of triangles lie, a row of the terrain has.
 GIntBig numbers_of_row(const GridBox& bounds) {
@@ -51,7 +59,8 @@ OGREnvelope FoundLayer::extent() const {
 }
 
 bool FoundLayer::is_able(const char* capability) const {
-  return EQUAL(capability, OLCFastGetExtent) || EQUAL(capability, OLCFastSpatialFilter);
+  return EQUAL(capability, OLCFastGetExtent) || EQUAL(capability, OLCFastSpatialFilter) ||
+         EQUAL(capability, OLCRandomRead);
 }
 
 std::optional<OGREnvelope> FoundLayer::box_of_filter() const {
@@ -62,10 +71,7 @@ std::optional<OGREnvelope> FoundLayer::box_of_filter() const {
 
 void FoundLayer::renew_metadata(const char* domain) {
   if (domain == nullptr || !EQUAL(domain, kOwnDomain)) return;
-  static_cast<void>(guarded([&] {
-    const OGREnvelope box = box_of_filter().value_or(extent());
-    tell_certificate(dataset_.certificate_of(detail(window_of(box))), *this);
-  }));
+  static_cast<void>(guarded([&] { tell_certificate(dataset_.certificate_of(detail()), *this); }));
 }
 
 bool FoundLayer::find_in_filter() {
@@ -90,12 +96,26 @@ std::unique_ptr<OGRFeature> FoundLayer::feature(std::size_t i) const {
 
 OGRFeature* FoundLayer::GetNextRawFeature() {
   std::unique_ptr<OGRFeature> next;
-  static_cast<void>(guarded([&] {
-    if (!find_in_filter() || next_ >= size()) return;
+  const bool is_read = guarded([&] {
+    if (!find_in_filter()) return;
+    while (next_ < size() && !may_meet(next_, *found_)) ++next_;
+    if (next_ >= size()) return;
     next = feature(next_);
     ++next_;
-  }));
+  });
+  has_failed_ = has_failed_ || !is_read;
   return next.release();
+}
+
+GIntBig FoundLayer::GetFeatureCount(int is_forced) {
+  if (is_forced == FALSE) return -1;
+  // GDAL's own would count what comes before a failure.
+  ResetReading();
+  GIntBig count = 0;
+  while (const std::unique_ptr<OGRFeature> next{GetNextFeature()}) ++count;
+  const bool is_whole = !has_failed_;
+  ResetReading();
+  return is_whole ? count : -1;
 }
 
 OGRFeature* FoundLayer::GetFeature(GIntBig wanted) {
@@ -115,10 +135,10 @@ std::unique_ptr<OGRFeature> FoundLayer::found_feature(GIntBig wanted) const {
   return nullptr;
 }
 
-DetailRequest TriangleLayer::detail(const Window& window) const {
+DetailRequest TriangleLayer::detail() const {
   if (dataset().options().error) return detail_of(dataset().options().error);
   IoCounters io;
-  return detail_for(dataset().terrain().store(), kVerticesOfLayer, window, io);
+  return detail_for(dataset().terrain().store(), kVerticesOfLayer, dataset().bounds(), io);
 }
 
 void TriangleLayer::find(const Window& window) {
@@ -127,7 +147,7 @@ void TriangleLayer::find(const Window& window) {
   PartRequest request;
   request.region = window;
   request.limits.memory_bytes = dataset().options().memory_bytes;
-  request.detail = detail(window);
+  request.detail = detail();
   parts_ = dataset().terrain().parts(request);
   tin_ = parts_->part(store.facts().bounds);
   if (tin_ == nullptr) {
@@ -185,29 +205,106 @@ IsolineLayer::IsolineLayer(const TerrainDataset& dataset)
     : FoundLayer(dataset, "isolines", wkbLineString25D) {
   OGRFieldDefn field("elev", OFTReal);
   definition().AddFieldDefn(&field);
+  set_cells();
 }
 
-DetailRequest IsolineLayer::detail(const Window& /*window*/) const {
-  return detail_of(dataset().options().error);
+DetailRequest IsolineLayer::detail() const { return detail_of(dataset().options().error); }
+
+void IsolineLayer::set_cells() {
+  const Window all = dataset().bounds();
+  const std::uint64_t records =
+      records_above(dataset().terrain().store(), detail().tolerance.value_or(-1.0));
+  const std::uint64_t most = dataset().options().memory_bytes / kBytesOfRecord;
+  while (records / static_cast<std::uint64_t>(columns_ * rows_) > most) {
+    const double width = (all.max_x - all.min_x) / static_cast<double>(columns_);
+    const double height = (all.max_y - all.min_y) / static_cast<double>(rows_);
+    (width >= height ? columns_ : rows_) *= 2;
+  }
 }
 
-void IsolineLayer::find(const Window& window) {
-  lines_.reset();
+Window IsolineLayer::window_of_cell(std::int64_t cell) const {
+  const Window all = dataset().bounds();
+  const auto side = [](double from, double to, std::int64_t i, std::int64_t of) {
+    return std::lerp(from, to, static_cast<double>(i) / static_cast<double>(of));
+  };
+  const std::int64_t column = cell % columns_, row = cell / columns_;
+  return {side(all.min_x, all.max_x, column, columns_), side(all.min_y, all.max_y, row, rows_),
+          side(all.min_x, all.max_x, column + 1, columns_),
+          side(all.min_y, all.max_y, row + 1, rows_)};
+}
+
+std::vector<std::int64_t> IsolineLayer::cells_in(const Window& window) const {
+  std::vector<std::int64_t> cells;
+  for (std::int64_t cell = 0; cell < columns_ * rows_; ++cell) {
+    const Window w = window_of_cell(cell);
+    if (w.min_x <= window.max_x && w.min_y <= window.max_y && w.max_x >= window.min_x &&
+        w.max_y >= window.min_y) {
+      cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+void IsolineLayer::find(const Window& window) { find_cells(cells_in(window)); }
+
+void IsolineLayer::find_cells(const std::vector<std::int64_t>& cells) {
+  const auto is_cell = [](const CellLines& lines, std::int64_t cell) { return lines.cell == cell; };
+  if (std::equal(cells_.begin(), cells_.end(), cells.begin(), cells.end(), is_cell)) return;
+  cells_.clear();
   const OpenOptions& options = dataset().options();
   const StoreFacts& facts = dataset().facts();
   IsolineRequest request;
   request.levels = levels_at(*options.interval, 0.0, facts.min_height, facts.max_height);
   if (request.levels.empty()) return;
-  request.region = window;
   request.limits.memory_bytes = options.memory_bytes;
-  request.detail = detail(window);
-  lines_ = dataset().terrain().isolines(request);
+  request.detail = detail();
+  std::error_code missing;  // without a folder no file is made: points are to fit into memory
+  request.temporary_folder = std::filesystem::temp_directory_path(missing).string();
+  for (const std::int64_t cell : cells) {
+    request.region = window_of_cell(cell);
+    const std::size_t first = size();
+    cells_.push_back({cell, first, dataset().terrain().isolines(request)});
+  }
+}
+
+std::size_t IsolineLayer::size() const {
+  return cells_.empty() ? 0 : cells_.back().first + cells_.back().lines.size();
+}
+
+IsolineLayer::Place IsolineLayer::place_of(std::size_t i) const {
+  const auto after =
+      std::upper_bound(cells_.begin(), cells_.end(), i,
+                       [](std::size_t line, const CellLines& lines) { return line < lines.first; });
+  const CellLines& cell = *(after - 1);
+  return {cell, i - cell.first};
+}
+
+GIntBig IsolineLayer::number(std::size_t i) const {
+  const Place place = place_of(i);
+  return (place.cell.cell << kBitsOfLine) + static_cast<GIntBig>(place.line);
+}
+
+std::unique_ptr<OGRFeature> IsolineLayer::feature_elsewhere(GIntBig wanted) {
+  const std::int64_t cell = wanted >> kBitsOfLine;
+  if (wanted < 0 || cell >= columns_ * rows_) return nullptr;
+  if (!beside_) beside_ = std::make_unique<IsolineLayer>(dataset());
+  beside_->find_cells({cell});
+  return beside_->found_feature(wanted);
+}
+
+bool IsolineLayer::may_meet(std::size_t i, const OGREnvelope& box) const {
+  const Place place = place_of(i);
+  std::vector<MapPoint> points;
+  OGREnvelope around;
+  for (const MapPoint& p : place.cell.lines.line(place.line, points).points) around.Merge(p.x, p.y);
+  return around.Intersects(box) != 0;
 }
 
 void IsolineLayer::fill(std::size_t i, OGRFeature& feature) const {
+  const Place place = place_of(i);
   std::vector<MapPoint> points;
-  const Isoline line = lines_->line(i, points);
-  const double height = lines_->levels()[line.level];
+  const Isoline line = place.cell.lines.line(place.line, points);
+  const double height = place.cell.lines.levels()[line.level];
   auto geometry = std::make_unique<OGRLineString>();
   geometry->setNumPoints(static_cast<int>(line.points.size()), FALSE);
   for (std::size_t k = 0; k < line.points.size(); ++k) {

@@ -3,10 +3,12 @@
 // Heights at pixels.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <variant>
 
+#include "engine/crs/border_move.h"
 #include "engine/error.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/facts/source_count.h"
@@ -87,6 +89,11 @@ py::tuple raster(const OpenTerrain& t, const std::optional<std::array<double, 4>
   RasterRequest request = pixels_of(t, window, size, pixel_size);
   asked.put(request, stop.get_token());
   request.as_fine_as_pixels = as_fine_as_pixels;
+  if (as_fine_as_pixels) {
+    request.most_error =
+        most_error_for_pixels(border_reach(t.terrain.store(), 1.0),
+                              std::abs(request.lattice.step_x), std::abs(request.lattice.step_y));
+  }
   const PixelRect& pixels = request.pixels;
   if (pixels.width > INT32_MAX || pixels.height > INT32_MAX) {
     refuse("the raster would have more than 2^31 - 1 columns or rows", "size");

@@ -56,6 +56,10 @@ void check(const std::string& file, const RasterRequest& request) {
   if (!(request.lattice.margin.x >= 0 && request.lattice.margin.y >= 0)) {
     refuse("the raster's margin is negative or not a number: give map units >= 0", file);
   }
+  if (!(request.most_error >= 0)) {
+    refuse("the raster's greatest error is negative or not a number: give height's units >= 0",
+           file);
+  }
   if (request.as_fine_as_pixels && (request.detail.tolerance || request.detail.vertices)) {
     refuse("both a level of detail and one as fine as the pixels are asked for: ask for one", file);
   }
@@ -75,7 +79,8 @@ DetailRequest detail_of(const OpenedTerrain& terrain, const RasterRequest& reque
                         QueryContext& context) {
   if (!request.as_fine_as_pixels) return request.detail;
   return detail_for(terrain.store(), static_cast<std::uint64_t>(request.pixels.pixels()),
-                    window_of(request.lattice, request.pixels), context.cost.io);
+                    window_of(request.lattice, request.pixels), context.cost.io,
+                    request.most_error);
 }
 
 /// Reads one raster, rectangle by rectangle. Threads: one.

@@ -9,6 +9,7 @@
 #include <functional>
 #include <span>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/raster/pixel_lattice.h"
 #include "engine/query/raster/surface_normal.h"
 #include "engine/query/select/accounting.h"
@@ -27,6 +28,8 @@ struct RasterRequest {
   /// Instead of `detail`: the finest TIN that has about as many vertices in the window as there are
   /// pixels (detail_for()). Another window, or another number of pixels, may get another TIN.
   bool as_fine_as_pixels = false;
+  /// The level that is as fine as the pixels has no greater error.
+  double most_error = kInfinity;
 
   bool heights = true;
   bool states = false;   ///< Tell void from outside.

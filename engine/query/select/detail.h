@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/geometry/infinity.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/region.h"
@@ -97,8 +98,8 @@ class Detail {
 [[nodiscard]] std::uint64_t records_above(const StoreFile& store, double tolerance);
 
 /// The level that is as fine as so many vertices, pixels for example, in a window: the least end of
-/// a bin of errors above which the TIN has about at most so many vertices in the window. Nothing is
-/// set where the full TIN has no more.
+/// a bin of errors above which the TIN has about at most so many vertices in the window, or the
+/// greatest finite one. Nothing is set where the full TIN has no more.
 ///
 /// An estimate: exact where the window holds the whole terrain, else by the index, which tells of
 /// each page a box, the number of its records and the range of their errors. Of windows of a 5th to
@@ -106,9 +107,12 @@ class Detail {
 /// nearly all lay between half and twice as many.
 /// @param window  Map units.
 /// @param io      What was read is added.
+/// @param most_error  The level has no greater error, though it has more vertices: the borders of many
+///                    voids take more than there are pixels (engine/crs/border_move.h).
 /// @throws Error corruption, io_error
 /// Cost: a few nodes of the index for windows of few vertices, at most those of the window; no page.
 [[nodiscard]] DetailRequest detail_for(const StoreFile& store, std::uint64_t vertices,
-                                       const Window& window, IoCounters& io);
+                                       const Window& window, IoCounters& io,
+                                       double most_error = kInfinity);
 
 }  // namespace ptin

@@ -105,8 +105,23 @@ std::uint64_t records_above(const StoreFile& store, double tolerance) {
   return records;
 }
 
+namespace {
+
+/// The level above a bin of errors, or above the next one below it that allows no greater error than asked.
+/// A level has all records of infinite error: without them it would certify nothing.
+DetailRequest level_above(std::span<const ErrorBin> bins, std::size_t bin, double most_error) {
+  const auto is_allowed = [&](const ErrorBin& b) {
+    return std::isfinite(b.upper) && b.upper <= most_error;
+  };
+  while (bin > 0 && !is_allowed(bins[bin])) --bin;
+  if (!is_allowed(bins[bin])) return {};
+  return {static_cast<double>(bins[bin].upper), std::nullopt};
+}
+
+}  // namespace
+
 DetailRequest detail_for(const StoreFile& store, std::uint64_t vertices, const Window& window,
-                         IoCounters& io) {
+                         IoCounters& io, double most_error) {
   const GridWindow on = on_grid(window, store.facts().map);
   const std::span<const ErrorBin> bins = store.error_bins();
   const auto of_t0 = std::count_if(store.t0().vertices.begin(), store.t0().vertices.end(),
@@ -134,7 +149,7 @@ DetailRequest detail_for(const StoreFile& store, std::uint64_t vertices, const W
     double kept = 0.0;
     for (std::size_t i = bins.size(); i-- > lowest;) {
       kept += counts[i];
-      if (kept > most) return {static_cast<double>(bins[i].upper), std::nullopt};
+      if (kept > most) return level_above(bins, i, most_error);
     }
     if (lowest == 0) return {};
   }

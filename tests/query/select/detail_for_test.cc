@@ -57,9 +57,14 @@ TEST(DetailFor, KeepsAsManyVerticesOfAWholeTerrainAsItMay) {
   for (const char* name : test::some_of({"mountains_257.tif", "coast_257.tif"})) {
     const Terrain& terrain = reference::built_terrain(name);
     const Window whole = window_of(terrain.store().facts());
+    const DetailRequest coarsest = level_for(terrain, 0, whole);
+    EXPECT_TRUE(std::isfinite(coarsest.tolerance.value()));
+    const std::uint64_t least = vertices_in(terrain, coarsest, whole);
+    EXPECT_LT(least, 10U);
     for (const std::uint64_t vertices : {4U, 50U, 400U, 5'000U, 20'000U, 1'000'000U}) {
       const DetailRequest detail = level_for(terrain, vertices, whole);
-      EXPECT_LE(vertices_in(terrain, detail, whole), std::max<std::uint64_t>(vertices, 4)) << name;
+      EXPECT_LE(vertices_in(terrain, detail, whole), std::max<std::uint64_t>(vertices, least))
+          << name;
       if (detail.tolerance) {
         EXPECT_GT(vertices_in(terrain, finer(terrain, detail), whole), vertices) << name;
       }
@@ -102,6 +107,21 @@ TEST(DetailFor, IsTheFullTinWhereNothingIsToBeSeen) {
   const Window all = window_of(terrain.store().facts());
   EXPECT_FALSE(level_for(terrain, 10, {all.max_x + 1e5, all.max_y, all.max_x + 2e5, all.max_y + 1})
                    .tolerance);
+}
+
+TEST(DetailFor, HasNoGreaterErrorThanIsAllowed) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  const Window all = window_of(terrain.store().facts());
+  IoCounters io;
+  const auto level = [&](std::uint64_t vertices, double most_error) {
+    return detail_for(terrain.store(), vertices, all, io, most_error).tolerance;
+  };
+  const double free = level(100, kInfinity).value();
+  EXPECT_EQ(level(100, free), free);
+  EXPECT_LT(level(100, free / 10).value(), free / 10 + 1e-12);
+  EXPECT_EQ(level(1, kInfinity), level(0, kInfinity));
+  EXPECT_TRUE(std::isfinite(level(0, kInfinity).value())) << "fewer vertices than T0 has";
+  EXPECT_FALSE(level(100, -1.0)) << "nothing but the full TIN";
 }
 
 TEST(DetailFor, IsTheLevelOfARasterAsFineAsItsPixels) {
