@@ -32,7 +32,8 @@ laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& he
        [&file](std::uint64_t offset, std::span<unsigned char> into) { file.read(offset, into); }},
       {},
       header.first_point,
-      header.points};
+      header.points,
+      header.extended_records > 0 ? header.first_extended : 0};
   std::vector<unsigned char> layout;
   walk_records(file, records_before_points(file, header), [&](const LasRecordHead& record) {
     if (record.user == laz::kLayoutUser && record.id == laz::kLayoutRecord) {
