@@ -66,7 +66,7 @@ def build(
         InvalidArgument, NotFound; IoError, ResourceExhausted or KeyboardInterrupt, after which ``resume`` goes on.
 
     >>> heights = np.add.outer(np.arange(50.0), np.arange(60.0))
-    >>> report = build(heights, "plane.ptin", transform=(10, 0, 0, 0, -10, 500), overwrite=True)
+    >>> report = build(heights, "plane.ptin", transform=(10, 0, 0, 0, -10, 500), a_srs="EPSG:32611", overwrite=True)
     >>> report.samples, report.warnings
     (3000, [])
     """
