@@ -127,6 +127,7 @@ set(program_headers
     engine/construct/grid/source_point.h
     engine/construct/points/open_points.h
     engine/construct/kept_inputs.h
+    engine/construct/source_files.h
     engine/construct/process_limits.h
     engine/construct/raster/vrt_background.h
     engine/construct/read/column_names.h

@@ -14,6 +14,7 @@
 #include "engine/construct/kept_inputs.h"
 #include "engine/construct/memory_plan.h"
 #include "engine/construct/raster/raster_source.h"
+#include "engine/construct/source_files.h"
 #include "engine/construct/source_kind.h"
 #include "engine/construct/store_output.h"
 #include "engine/construct/tiled_source.h"
@@ -73,6 +74,7 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
       build_tin(job);
       break;
   }
+  warn_of_repeated(inputs, job.report.warnings);
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return std::move(job.report);
@@ -83,7 +85,7 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
 BuildReport build(const std::vector<std::string>& inputs, const std::string& output,
                   const BuildOptions& options, const BuildResources& resources) {
   try {
-    return build_of_kind(inputs, output, options, resources);
+    return build_of_kind(with_folders_opened(inputs), output, options, resources);
   } catch (const Error&) {
     throw;
   } catch (...) {  // before the work began, or after it

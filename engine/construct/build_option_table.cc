@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/construct/read/class_names.h"
 #include "engine/construct/read/column_names.h"
 #include "engine/error.h"
 
@@ -88,12 +89,15 @@ const std::vector<BuildOption>& table() {
        .is_for = "points and TINs",
        .is_always_kept = true},
       {.name = "class",
-       .help = "LAS: keep points of these classes, such as 2 for ground; 2,9 for several",
+       .help =
+           "LAS: keep points of these classes, as ground, or 2,8-12; behind ! those to leave "
+           "out, as '!noise' (default: all, noise and overlap too; withheld points never count)",
        .field = &Options::classes,
        .value = "N",
        .key = "classes",
        .inputs = Option::kPoints,
-       .is_for = "LAS"},
+       .is_for = "LAS",
+       .numbers_of = classes_of},
       {.name = "returns",
        .help =
            "LAS: keep the last return of each pulse (near the ground), the first, or all (default)",

@@ -66,6 +66,8 @@ struct BuildOption {
   bool has_many = false;         ///< A list that goes on to the next option; else commas divide it.
   bool shows_default = false;    ///< In help.
   bool reads = true;             ///< It says what is read, and not how tiles are made of it.
+  /// A list of numbers: reads them from words.
+  std::vector<int> (*numbers_of)(const std::vector<std::string>& words) = nullptr;
   /// What is wrong with a value beside its range; null: nothing.
   const char* (*fault)(const BuildOptions& options) = nullptr;
   /// Instead of the words that refuse it where inputs are others; may be null.

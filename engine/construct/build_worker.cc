@@ -48,26 +48,26 @@ void require_same(const BuildNote& note, const std::vector<std::string>& inputs,
 }  // namespace
 
 struct BuildWorker::Impl {
-  Impl(const std::vector<std::string>& inputs, const BuildOptions& options,
+  Impl(const std::vector<std::string>& named, const BuildOptions& options,
        const BuildResources& given, const BuildNote& note)
-      : resources(given),
+      : inputs(with_folders_opened(named)),
+        resources(given),
         files(given.files != nullptr ? *given.files : FileLayer::system()),
         memory(plan_memory(given.memory_bytes, source_kind(inputs, options))),
         cache(memory.gdal_cache) {
     require_same(note, inputs, options, given);
     if (note.index.is_null()) {
-      open_to_read(inputs, source_options_of(options), note);
+      open_to_read(source_options_of(options), note);
     } else {
-      open_tiles(inputs, options, note);
+      open_tiles(options, note);
     }
   }
-  void open_to_read(const std::vector<std::string>& inputs, const SourceOptions& options,
-                    const BuildNote& note);
-  void open_tiles(const std::vector<std::string>& inputs, const BuildOptions& options,
-                  const BuildNote& note);
+  void open_to_read(const SourceOptions& options, const BuildNote& note);
+  void open_tiles(const BuildOptions& options, const BuildNote& note);
   [[nodiscard]] BuildPlan plan() const;
   void make_room(std::uint64_t bytes) const;
 
+  const std::vector<std::string> inputs;  ///< Folders opened; what reads them refers to it.
   BuildResources resources;
   FileLayer& files;
   MemoryPlan memory;
@@ -77,8 +77,7 @@ struct BuildWorker::Impl {
   std::unique_ptr<TaskWorker> worker;
 };
 
-void BuildWorker::Impl::open_to_read(const std::vector<std::string>& inputs,
-                                     const SourceOptions& options, const BuildNote& note) {
+void BuildWorker::Impl::open_to_read(const SourceOptions& options, const BuildNote& note) {
   if (memory.kind == InputKind::kRaster) {
     worker = RasterSource::open_to_scan(inputs, options);
   } else if (memory.kind == InputKind::kPoints) {
@@ -91,8 +90,7 @@ void BuildWorker::Impl::open_to_read(const std::vector<std::string>& inputs,
   }
 }
 
-void BuildWorker::Impl::open_tiles(const std::vector<std::string>& inputs,
-                                   const BuildOptions& options, const BuildNote& note) {
+void BuildWorker::Impl::open_tiles(const BuildOptions& options, const BuildNote& note) {
   tiles = take_up_source(inputs, options, note.index, note.temporary, files, resources.stop);
   packer = std::make_unique<StorePacker>(options, tiles->frame, files, note.folder);
   worker = std::make_unique<TileWorker>(TaskSetup{tiles->tree, collapse_options(options, *tiles),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/construct/source_files.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -11,6 +12,7 @@
 
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/read/input_kind.h"
+#include "engine/error.h"
 #include "storage/file/file_questions.h"
 
 namespace ptin {
@@ -72,6 +74,44 @@ std::vector<std::string> files_of_input(const std::string& input) {
   std::set<std::string> files;
   collect(input, files);
   return {files.begin(), files.end()};
+}
+
+std::vector<std::string> with_folders_opened(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files;
+  for (const std::string& input : inputs) {
+    if (input == "-") {
+      refuse("a source is not read from standard input; write it to a file first, and name that");
+    }
+    std::error_code ignored;
+    std::vector<std::string> tiles;
+    if (fs::is_directory(input, ignored)) {
+      tiles = paths_in(input);
+    }
+    std::erase_if(tiles, [](const std::string& path) {
+      std::error_code none;
+      return point_format_of(path, {}) != PointFormat::kLas || fs::is_directory(path, none);
+    });
+    std::sort(tiles.begin(), tiles.end());
+    if (tiles.empty()) {
+      tiles.push_back(input);
+    }
+    files.insert(files.end(), tiles.begin(), tiles.end());
+  }
+  return files;
+}
+
+void warn_of_repeated(const std::vector<std::string>& inputs, SourceWarnings& warnings) {
+  std::set<std::string> seen;
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    const fs::path file = fs::canonical(input, ignored);
+    if (!seen.insert(ignored ? input : file.string()).second) {
+      warnings.add({"repeated_input",
+                    "this file is named more than once among the inputs, and is read each time; "
+                    "name it once, or the file that was meant",
+                    input});
+    }
+  }
 }
 
 nlohmann::json input_fingerprint(const std::vector<std::string>& inputs) {

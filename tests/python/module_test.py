@@ -895,6 +895,15 @@ class Build(unittest.TestCase):
         with open("own.tif", "rb") as file:
             self.assertEqual(file.read(), before)
 
+    def test_classes_are_numbers_ranges_and_names(self):
+        path = os.path.join(ROOT, "tests/data/ground_points.csv")  # which has none, as is seen once they are read
+        for classes in (2, np.uint8(2), [2, 9], (2, 9), np.array([2, 9]), "2,8-10", "!noise", ["ground", 9]):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "is for LAS"):
+                ptin.build(path, "classes.ptin", classes=classes)
+        for wrong in (256, "grund", [2, "9-"], 2.5, [None]):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "is no class of LAS|is no value of the option"):
+                ptin.build(path, "classes.ptin", classes=wrong)
+
     def test_points_are_built_as_their_file(self):
         path = os.path.join(ROOT, "tests/data/ground_points.csv")
         points = np.loadtxt(path, delimiter=",", skiprows=1)[:, :3]

@@ -146,8 +146,8 @@ TEST(PointBuild, WarnsWhereMergingMovedAHeightFar) {
   write_file(folder.file("near.xyz"), "0 0 1\n9 0 1\n0 9 2\n0 0 201\n");
   write_file(folder.file("far.xyz"), "0 0 1\n9 0 1\n0 9 2\n0 0 203\n");
   const auto warning = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.begin(),
-                {"build", folder.file(name), "-o", folder.file("out.ptin"), "--overwrite"});
+    more.insert(more.begin(), {"build", folder.file(name), "-o", folder.file("out.ptin"),
+                               "--overwrite", "--a-srs", "EPSG:32611"});
     const std::string err = run_ptin(more).err;
     const std::size_t at = err.find("ptin: warning: ");
     return at == err.npos ? "" : err.substr(at, err.find('\n', at) - at);

@@ -167,7 +167,8 @@ bool is_whole(const Parameter& p) noexcept {
 
 bool is_text(const Parameter& p) noexcept {
   return holds_any_of<std::string*, std::vector<std::string>*,
-                      std::function<void(const std::string&)>>(p.into);
+                      std::function<void(const std::string&)>,
+                      std::function<void(const std::vector<std::string>&)>>(p.into);
 }
 
 bool is_list(const Parameter& p) noexcept {
@@ -233,10 +234,12 @@ void Reading::take(const Parameter& p, std::span<const std::string> values) {
            name_at(p, door_));
   }
   const auto put_all = [&](const auto& into) {
-    if constexpr (std::is_pointer_v<std::decay_t<decltype(into)>>) {
+    using Place = std::decay_t<decltype(into)>;
+    if constexpr (std::is_pointer_v<Place>) {
       put(p, values, *into);
     } else {
-      std::string value;
+      constexpr bool kIsOfAll = std::is_invocable_v<Place, const std::vector<std::string>&>;
+      std::conditional_t<kIsOfAll, std::vector<std::string>, std::string> value;
       put(p, values, value);
       try {
         into(value);

@@ -39,13 +39,14 @@ enum class Unit : std::uint8_t {
   kGround,  ///< A distance: map units; in a geographic CRS metres.
 };
 
-/// Where a value goes: a flag, numbers, whole numbers, texts, a window; or what reads a text, and
-/// throws Error where it is none of its values.
+/// Where a value goes: a flag, numbers, whole numbers, texts, a window; or what reads a text, or
+/// all texts of a list, and throws Error where one is none of its values.
 using Into =
     std::variant<bool*, double*, std::optional<double>*, std::vector<double>*, int*,
                  std::vector<int>*, std::uint32_t*, std::uint64_t*, std::optional<std::uint64_t>*,
                  std::string*, std::vector<std::string>*, std::optional<Window>*,
-                 std::optional<std::array<double, 4>>*, std::function<void(const std::string&)>>;
+                 std::optional<std::array<double, 4>>*, std::function<void(const std::string&)>,
+                 std::function<void(const std::vector<std::string>&)>>;
 
 inline constexpr std::uint32_t kAnyNumberOfValues = std::numeric_limits<std::uint32_t>::max();
 

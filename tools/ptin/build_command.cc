@@ -48,14 +48,15 @@ ask::Parameter row_of(const BuildOption& option, BuildOptions& options) {
         value = parse_number<std::int64_t>(text);
         if (!value) refuse("\"" + text + "\" is no whole number");
       };
+    } else if constexpr (std::is_same_v<Field, std::vector<int> BuildOptions::*>) {
+      row.into = [&value = options.*field, read = option.numbers_of](
+                     const std::vector<std::string>& words) { value = read(words); };
+      row.values(1, ask::kAnyNumberOfValues).repeated();
     } else {
       row.into = &(options.*field);
     }
   };
   std::visit(place, option.field);
-  if (std::holds_alternative<std::vector<int> BuildOptions::*>(option.field)) {
-    row.values(1, ask::kAnyNumberOfValues).repeated().split_at_commas();
-  }
   if (std::holds_alternative<std::optional<std::array<double, 4>> BuildOptions::*>(option.field)) {
     row.values(4, 4);
   }
@@ -99,11 +100,11 @@ void add_work_options(ask::Parameters& rows, BuildCommand& command) {
 
 ask::Parameters build_rows(BuildCommand& command) {
   ask::Parameters rows;
-  rows.add("input", &command.inputs, "",
-           "A raster that GDAL reads, several of one grid, or points: LAS, LAZ, CSV or XYZ text "
-           "(.gz too), or a layer that OGR reads; several files of one CRS; or a TIN: PLY, OBJ, "
-           "2DM, "
-           "LandXML")
+  rows.add(
+          "input", &command.inputs, "",
+          "A raster that GDAL reads, several of one grid, or points: LAS, LAZ (COPC too), a folder "
+          "of these, CSV or XYZ text (.gz too), or a layer that OGR reads; several files of one "
+          "CRS; or a TIN: PLY, OBJ, 2DM, LandXML")
       .spelled("INPUT")
       .values(1, ask::kAnyNumberOfValues);
   const auto add = [&](bool reads) {

@@ -55,7 +55,8 @@ std::string place_of(const SourceWarning& w) {
 /// How often, and in how many files.
 std::string extent_of(const SourceWarning& w) {
   std::string text;
-  if (w.count > 1) text = grouped(w.count) + " times, here first";
+  if (w.count > 1) text = grouped(w.count) + " times, " + (w.point == 0 ? "here first" : "first");
+  if (w.point > 0) text += (text.empty() ? "point " : " point ") + grouped(w.point);
   if (w.files > 1) text += (text.empty() ? "" : "; ") + counted(w.files - 1, "more file");
   return text.empty() ? "" : " (" + text + ")";
 }
@@ -87,6 +88,7 @@ nlohmann::json warnings_json(const SourceWarnings& warnings) {
                     {"message", w.message},
                     {"file", has_file ? nlohmann::json(w.file) : nlohmann::json()},
                     {"line", w.line > 0 ? nlohmann::json(w.line) : nlohmann::json()},
+                    {"point", w.point > 0 ? nlohmann::json(w.point) : nlohmann::json()},
                     {"count", w.count > 0 ? nlohmann::json(w.count) : nlohmann::json()},
                     {"files", has_file ? w.files : 0}});
   }

@@ -3,8 +3,11 @@
 // ptin info: what a file holds, without reading its record pages.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -119,6 +122,25 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
           {"metadata", metadata}};
 }
 
+/// Numbers as they are, or a list of whole ones as ranges: [0-6,8-17,19-255].
+std::string short_list(const nlohmann::json& value) {
+  const auto is_whole = [](const nlohmann::json& one) { return one.is_number_integer(); };
+  if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_whole)) return value.dump();
+  std::string text;
+  for (std::size_t i = 0; i < value.size();) {
+    const auto first = value[i].get<std::int64_t>();
+    std::size_t end = i + 1;
+    while (end < value.size() &&
+           value[end].get<std::int64_t>() == first + static_cast<std::int64_t>(end - i)) {
+      ++end;
+    }
+    text += (text.empty() ? "" : ",") + std::to_string(first);
+    if (end > i + 2) text += "-" + std::to_string(first + static_cast<std::int64_t>(end - i - 1));
+    i = end > i + 2 ? end : i + 1;
+  }
+  return "[" + text + "]";
+}
+
 /// Prints metadata as "key value" lines, flattened, but for what has a line of its own.
 void print_metadata(const nlohmann::json& object, const std::string& prefix) {
   for (const auto& [key, value] : object.items()) {
@@ -127,7 +149,7 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
     if (value.is_object()) {
       print_metadata(value, name);
     } else {
-      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      const std::string text = value.is_string() ? value.get<std::string>() : short_list(value);
       if (!text.empty()) std::printf("  %-28s %s\n", name.c_str(), printable(text).c_str());
     }
   }

@@ -75,12 +75,26 @@ void set_word(BuildOptions& options, const WordOption& field, const std::string&
   refuse("\"" + word + "\" is none of " + known, name);
 }
 
+/// A text or number, or several, as texts.
+std::vector<std::string> words_of(const py::handle& value) {
+  const bool is_one = py::isinstance<py::str>(value) || !py::isinstance<py::iterable>(value);
+  std::vector<std::string> words;
+  for (const py::handle one :
+       is_one ? py::make_tuple(value) : py::tuple(py::reinterpret_borrow<py::object>(value))) {
+    if (!py::isinstance<py::str>(one)) static_cast<void>(one.cast<int>());
+    words.push_back(py::str(one));
+  }
+  return words;
+}
+
 /// Puts a value of Python's where the table of options says.
 void set_option(BuildOptions& options, const BuildOption& option, const py::handle& value) {
   const auto put = [&](const auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (std::is_same_v<Field, WordOption>) {
       set_word(options, field, key_of(option), value);
+    } else if constexpr (std::is_same_v<Field, std::vector<int> BuildOptions::*>) {
+      options.*field = option.numbers_of(words_of(value));
     } else {
       auto& place = options.*field;
       place = value.cast<std::decay_t<decltype(place)>>();
@@ -123,7 +137,7 @@ py::list list_of_options() {
           if constexpr (std::is_same_v<Field, std::optional<std::int64_t> BuildOptions::*>)
             return "int";
           if constexpr (std::is_same_v<Field, std::vector<int> BuildOptions::*>)
-            return "list of int";
+            return "int, str or list of them";
           if constexpr (std::is_same_v<Field, std::vector<std::string> BuildOptions::*>)
             return "list of str";
           if constexpr (std::is_same_v<Field, std::optional<std::array<double, 4>> BuildOptions::*>)

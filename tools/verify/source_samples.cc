@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/read/input_kind.h"
+#include "engine/construct/source_files.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/error.h"
 #include "storage/file/file_questions.h"
@@ -123,8 +124,9 @@ bool are_rasters(const std::vector<std::string>& paths, const StoreFile& store) 
 
 }  // namespace
 
-void check_is_source(const std::vector<std::string>& paths, const StoreFile& store,
+void check_is_source(const std::vector<std::string>& inputs, const StoreFile& store,
                      const SampleResources& resources) {
+  const std::vector<std::string> paths = with_folders_opened(inputs);
   check_all_there(paths);
   if (are_rasters(paths, store)) {
     static_cast<void>(open_raster_samples(paths, store));
@@ -133,9 +135,10 @@ void check_is_source(const std::vector<std::string>& paths, const StoreFile& sto
   }
 }
 
-std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& paths,
+std::unique_ptr<SourceSamples> open_samples(const std::vector<std::string>& inputs,
                                             const StoreFile& store,
                                             const SampleResources& resources) {
+  const std::vector<std::string> paths = with_folders_opened(inputs);
   check_all_there(paths);
   if (!are_rasters(paths, store)) return open_point_samples(paths, store, resources);
   if (!resources.lines.is_empty()) {

@@ -14,6 +14,7 @@
 #include "engine/construct/grid/gdal_session.h"
 #include "engine/construct/grid/plain_datum.h"
 #include "engine/construct/grid/vertical_part.h"
+#include "engine/crs/crs_facts.h"
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
 #include "engine/handle.h"
@@ -146,6 +147,14 @@ Crs describe(OGRSpatialReference srs) {
   return crs;
 }
 
+/// The beginning of a text, on one line.
+std::string quoted(const std::string& text) {
+  std::string line = text.substr(0, 80);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  return "'" + line.substr(0, line.find_last_not_of(' ') + 1) + "'";
+}
+
 /// The CRS that a source declares; parts that are not understood are taken out and warned of.
 class OwnCrs {
  public:
@@ -181,13 +190,6 @@ class OwnCrs {
   }
 
  private:
-  /// The beginning of a text, on one line.
-  static std::string quoted(const std::string& text) {
-    std::string line = text.substr(0, 80);
-    std::replace_if(
-        line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
-    return "'" + line.substr(0, line.find_last_not_of(' ') + 1) + "'";
-  }
   void warn(const char* kind, std::string message) {
     warnings_.add({kind, std::move(message), file_});
   }
@@ -260,6 +262,35 @@ bool are_same(const std::string& wkt_a, const std::string& wkt_b, const Prepare&
   const char* const options[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES",
                                  "CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS", nullptr};
   return a.IsSame(&b, options) != 0;
+}
+
+/// "ETRS89 / UTM zone 32N (EPSG:25832)".
+std::string with_code(const std::string& name, const std::string& code) {
+  return code.empty() ? name : name + " (" + code + ")";
+}
+
+std::string name_in_plan(const DeclaredTexts& declared) {
+  if (declared.crs.empty()) {
+    return "no CRS";
+  }
+  if (!is_crs(declared.crs)) {
+    return quoted(declared.crs);
+  }
+  const CrsFacts facts = crs_facts(resolve_crs(declared.crs, "", "").wkt);
+  return with_code(facts.name, facts.code);
+}
+
+std::string name_of_vertical(const DeclaredTexts& declared) {
+  const bool is_apart = !declared.vertical_crs.empty();
+  if (is_apart ? !is_vertical_crs(declared.vertical_crs) : !is_crs(declared.crs)) {
+    return is_apart ? quoted(declared.vertical_crs) : "no vertical CRS";
+  }
+  // A compound CRS shows what a vertical one is: any other part in plan does.
+  const Crs crs = is_apart ? resolve_crs("EPSG:32631", "", declared.vertical_crs)
+                           : resolve_crs(declared.crs, "", "");
+  const CrsFacts facts = crs_facts(crs.wkt);
+  return facts.vertical_name.empty() ? "no vertical CRS"
+                                     : with_code(facts.vertical_name, facts.vertical_code);
 }
 
 /// Warns of axes that point elsewhere than those of a terrain.
@@ -359,6 +390,33 @@ bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b) {
       srs.DemoteTo2D(nullptr);
     }
   });
+}
+
+std::optional<CrsDifference> difference_of(const DeclaredTexts& first,
+                                           const DeclaredTexts& second) {
+  if (is_same_crs(first.crs, second.crs) && is_same_crs(first.vertical_crs, second.vertical_crs)) {
+    return std::nullopt;
+  }
+  const bool is_in_plan = !is_same_in_plan(first.crs, second.crs);
+  CrsDifference names{is_in_plan ? name_in_plan(first) : name_of_vertical(first),
+                      is_in_plan ? name_in_plan(second) : name_of_vertical(second)};
+  if (names.first == names.second) {
+    names.second += " of other parameters";
+  }
+  return names;
+}
+
+void warn_of_no_crs(const TerrainFrame& frame, const std::string& file, SourceWarnings& warnings) {
+  const auto& all = warnings.all();
+  const bool is_told = std::any_of(all.begin(), all.end(), [](const SourceWarning& w) {
+    return w.kind.starts_with("crs_") || w.kind == "degrees_without_crs";
+  });
+  if (frame.crs_wkt.empty() && !is_told) {
+    warnings.add({"crs_none",
+                  "no CRS is declared, so the terrain has none and lies nowhere on a map; name it "
+                  "by --a-srs",
+                  file});
+  }
 }
 
 void set_crs(TerrainFrame& frame, const Crs& crs) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "engine/construct/grid/source_options.h"
@@ -80,6 +81,20 @@ struct Crs {
 /// True when two texts name CRSs that are the same in plan, whatever their vertical parts. A text that
 /// GDAL does not understand is the same as itself alone.
 [[nodiscard]] bool is_same_in_plan(const std::string& wkt_a, const std::string& wkt_b);
+
+/// What two sources declare where that is not the same, in words: the horizontal parts where these
+/// differ, else the vertical ones.
+struct CrsDifference {
+  std::string first, second;  ///< "ETRS89 / UTM zone 32N (EPSG:25832)", "no vertical CRS".
+};
+
+/// None where both declare the same, as is_same_crs().  Cost: as resolve_crs().
+[[nodiscard]] std::optional<CrsDifference> difference_of(const DeclaredTexts& first,
+                                                         const DeclaredTexts& second);
+
+/// Warns of a terrain whose source declares no CRS, where no other warning says why there is none.
+/// @param file  The first file of the source, which the warning names.
+void warn_of_no_crs(const TerrainFrame& frame, const std::string& file, SourceWarnings& warnings);
 
 /// Sets those fields of `frame` that describe the CRS.
 void set_crs(TerrainFrame& frame, const Crs& crs);

@@ -49,7 +49,10 @@ void EndValues::insert(const Value& v) noexcept {
                                [&](const Value& kept) { return v.value <= kept.value; });
   if (at != values.end() && at->value == v.value) {
     at->points += v.points;
-    at->place = std::min(at->place, v.place);
+    if (v.place < at->place) {
+      at->place = v.place;
+      at->input = v.input;
+    }
     return;
   }
   std::move_backward(at, values.end() - 1, values.end());
@@ -71,7 +74,17 @@ void FarPoints::join(const FarPoints& other) noexcept {
   }
 }
 
-SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file,
+void FarPoints::set_input(std::uint64_t input) noexcept {
+  for (auto* const ends : {&low_, &high_}) {
+    for (EndValues& of_axis : *ends) {
+      for (EndValues::Value& v : of_axis.values) {
+        v.input = input;
+      }
+    }
+  }
+}
+
+SourceWarnings FarPoints::warnings(std::uint64_t points, const std::vector<std::string>& files,
                                    bool are_vertices) const {
   constexpr double kNear = 100.0;
   constexpr std::array<const char*, 3> kNames = {"x", "y", "height"};
@@ -89,7 +102,7 @@ SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file
                    "taken as it is, at " +
                    text_of(lowest[0].place) + "; --nodata " + value + " leaves " +
                    (are_vertices ? "triangles with such corners out" : "such points out"),
-               file, value, 0, lowest[0].points});
+               files[lowest[0].input], value, 0, lowest[0].points});
   }
   for (std::size_t axis = 0; axis < 3 && points >= kFewestPoints; ++axis) {
     for (const bool is_low : {true, false}) {
@@ -109,7 +122,7 @@ SourceWarnings FarPoints::warnings(std::uint64_t points, const std::string& file
                      text_of(ends.values[0].place) + "; if it is a fault, " +
                      (are_vertices ? "take it out of the file" : "leave it out by --bbox") +
                      (axis == 2 ? ", or by --nodata with its height" : ""),
-                 file, "", 0, count});
+                 files[ends.values[0].input], "", 0, count});
       return found;
     }
   }

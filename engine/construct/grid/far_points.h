@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "engine/construct/grid/source_warning.h"
 
@@ -20,6 +21,7 @@ struct EndValues {
     double value = std::numeric_limits<double>::infinity();
     std::uint64_t points = 0;
     std::array<double, 3> place{};
+    std::uint64_t input = 0;  ///< The number of the file that it lies in.
   };
   /// Distinct and rising; of the largest values the negative ones, so that these rise, too.
   std::array<Value, kKept> values;
@@ -42,18 +44,20 @@ class FarPoints {
   void add(double x, double y, double z) noexcept {
     const std::array<double, 3> p{x, y, z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low_[axis].add({p[axis], 1, p});
-      high_[axis].add({-p[axis], 1, p});
+      low_[axis].add({p[axis], 1, p, 0});
+      high_[axis].add({-p[axis], 1, p, 0});
     }
   }
   void join(const FarPoints& other) noexcept;
+  /// Says in which file all points so far lie.
+  void set_input(std::uint64_t input) noexcept;
   /// Warns of up to three values of x, of y or of the height, each of a few points, that lie ten times
   /// as far from the next value as all others reach; and of heights that often stand for none, such
   /// as -9999, where no other height is near.
   /// @param points        How many were seen.
-  /// @param file          The source, for the warnings.
+  /// @param files         The source, for the warnings; by the numbers of set_input().
   /// @param are_vertices  They are those of a TIN, which no box cuts.
-  [[nodiscard]] SourceWarnings warnings(std::uint64_t points, const std::string& file,
+  [[nodiscard]] SourceWarnings warnings(std::uint64_t points, const std::vector<std::string>& files,
                                         bool are_vertices) const;
 
  private:

@@ -181,9 +181,11 @@ class PointGridScan {
   void add_line_vertex(const SourcePoint& v, bool has_height, bool degrees) noexcept;
   [[nodiscard]] std::uint64_t points() const noexcept { return extent_.points; }
   /// Warnings of points that lie far from all others.
+  /// @param files         As FarPoints::warnings().
   /// @param are_vertices  They are those of a TIN.
-  [[nodiscard]] SourceWarnings warnings(bool are_vertices = false) const {
-    return extent_.far.warnings(extent_.points, context_, are_vertices);
+  [[nodiscard]] SourceWarnings warnings(const std::vector<std::string>& files,
+                                        bool are_vertices) const {
+    return extent_.far.warnings(extent_.points, files, are_vertices);
   }
   /// True when the boxes of all points and of all vertices of lines so far have nothing in common.
   [[nodiscard]] bool lines_are_elsewhere() const noexcept;

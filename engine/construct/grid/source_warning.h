@@ -20,6 +20,7 @@ struct SourceWarning {
   std::uint64_t count = 0;     ///< Samples or points; 0 where it is about a file as a whole.
   std::uint64_t files = 1;     ///< Files that it is about.
   std::string last_file = {};  ///< The last of them; "" means `file`.
+  std::uint64_t point = 0;     ///< The first point of `file` that it is about, from 1; 0: none.
 };
 
 /// Warnings in the order in which they were first given. Those of one kind and subject are one, with

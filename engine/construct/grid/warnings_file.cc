@@ -8,7 +8,7 @@ namespace ptin {
 
 template <class File, MaybeConst<SourceWarning> Warning>
 void serialize(File& file, Warning& w) {
-  file.values(w.kind, w.message, w.file, w.subject, w.last_file, w.line, w.count, w.files);
+  file.values(w.kind, w.message, w.file, w.subject, w.last_file, w.line, w.count, w.files, w.point);
 }
 
 void serialize(ArrayFileWriter& file, const SourceWarnings& warnings) {

@@ -11,7 +11,7 @@
 namespace ptin::laz {
 
 ChunkTable::ChunkTable(const Source& source, const Layout& layout, std::uint64_t first_point,
-                       std::uint64_t points)
+                       std::uint64_t points, std::uint64_t records)
     : source_(source), layout_(layout), points_(points), at_(first_point), decoder_(source) {
   if (points == 0) {
     return;
@@ -27,10 +27,27 @@ ChunkTable::ChunkTable(const Source& source, const Layout& layout, std::uint64_t
   at_ = first_point + 8;
   std::array<unsigned char, 8> place{};
   source.read(first_point, place);
-  if (las_value<std::int64_t>(place, 0) == -1) {
-    source.read(source.bytes - 8, place);
+  const bool is_behind = las_value<std::int64_t>(place, 0) == -1;
+  open_table(is_behind ? place_behind(records) : las_value<std::uint64_t>(place, 0));
+}
+
+/// Where the table begins, by the bytes behind it. Of two places that may have them, the one counts
+/// that names a table before itself.
+std::uint64_t ChunkTable::place_behind(std::uint64_t records) const {
+  for (const std::uint64_t end : {source_.bytes, records}) {
+    std::array<unsigned char, 8> place{};
+    if (end > source_.bytes || end < at_ + 8 + place.size()) {
+      continue;
+    }
+    source_.read(end - place.size(), place);
+    const auto begin = las_value<std::uint64_t>(place, 0);
+    if (begin >= at_ && begin <= end - 8 - place.size()) {
+      return begin;
+    }
   }
-  open_table(las_value<std::uint64_t>(place, 0));
+  refuse(
+      "neither its end nor what lies before its extended records says where its table of chunks "
+      "begins, as the file of a writer that cannot go back does");
 }
 
 void ChunkTable::refuse(const std::string& fault) const {

@@ -25,15 +25,17 @@ struct Chunk {
 /// The table: a version (0) and the number of chunks, 32 bits each, then for each chunk the number of
 /// its points, where that varies, and of its bytes, coded as integers of which each predicts the next
 /// (LASzip's open source, lasreadpoint.cpp). Eight bytes before the first chunk say where the table
-/// begins; -1 there means that the last eight bytes of the file do.
+/// begins; -1 there means that the eight bytes behind the table do: the last ones of the file, or
+/// those before the records that lie behind the points.
 class ChunkTable {
  public:
   /// @param source        Must outlive this, as `layout`.
   /// @param first_point   Where the points begin in the file, as the header says.
   /// @param points        Those of the header.
+  /// @param records       Where the records behind the points begin; 0: there are none.
   /// @throws Error invalid_argument  there is no table, or it contradicts the file's size
   ChunkTable(const Source& source, const Layout& layout, std::uint64_t first_point,
-             std::uint64_t points);
+             std::uint64_t points, std::uint64_t records);
 
   /// The next chunk; false behind the last one that has points of the header's number. A number
   /// that ends within a chunk cuts it, which whoever decodes the chunk sees by its bytes.
@@ -43,6 +45,7 @@ class ChunkTable {
   [[nodiscard]] std::uint64_t chunks_left() const noexcept { return chunks_; }
 
  private:
+  [[nodiscard]] std::uint64_t place_behind(std::uint64_t records) const;
   void open_table(std::uint64_t begin);
   [[nodiscard]] Chunk read_entry();
   [[noreturn]] void refuse(const std::string& fault) const;

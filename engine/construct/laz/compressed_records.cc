@@ -26,7 +26,8 @@ CompressedRecords::CompressedRecords(CompressedPoints points, std::uint64_t begi
 /// Looks for the first and the last chunk, and opens the table at the first one.
 void CompressedRecords::find_chunks(std::uint64_t begin, std::uint64_t end) {
   const auto open = [&] {
-    table_.emplace(points_.source, points_.layout, points_.first_point, points_.points);
+    table_.emplace(points_.source, points_.layout, points_.first_point, points_.points,
+                   points_.records);
   };
   open();
   Chunk chunk;

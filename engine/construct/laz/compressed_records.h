@@ -21,6 +21,7 @@ struct CompressedPoints {
   Layout layout;
   std::uint64_t first_point = 0;  ///< Byte offset.
   std::uint64_t points = 0;
+  std::uint64_t records = 0;  ///< Byte offset of the records behind the points; 0: there are none.
 };
 
 /// Reads the chunks of which the first point is one of some records, and of these chunks all points.

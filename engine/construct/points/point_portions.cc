@@ -48,6 +48,13 @@ void cut(const PointPortion& whole, const PointStream& stream, std::uint64_t siz
   }
 }
 
+/// "no unit of x and y and heights in 'US survey foot'".
+std::string named(const DeclaredUnits& units) {
+  return (units.plane.empty() ? "no unit of x and y" : "x and y in '" + units.plane + "'") +
+         (units.heights.empty() ? " and none of heights"
+                                : " and heights in '" + units.heights + "'");
+}
+
 }  // namespace
 
 bool can_be_read_once_only(const std::string& path) {
@@ -56,14 +63,6 @@ bool can_be_read_once_only(const std::string& path) {
   return type == std::filesystem::file_type::fifo ||
          type == std::filesystem::file_type::character ||
          type == std::filesystem::file_type::socket;
-}
-
-void SourceAgreement::require(bool is_same, const std::string& path) const {
-  if (!is_same) {
-    refuse("this file has another CRS than '" + path_ + "', or one of them has none; transform " +
-               "it first, or say with --a-srs what all of them are in",
-           path);
-  }
 }
 
 void SourceAgreement::add(const PointStreamFacts& facts, const std::string& path) {
@@ -77,13 +76,16 @@ void SourceAgreement::add(const PointStreamFacts& facts, const std::string& path
     return;
   }
   if (counts) {
-    require(crs_ == facts.crs || is_same_crs(crs_, facts.crs), path);
-    require(vertical_crs_ == facts.vertical_crs || is_same_crs(vertical_crs_, facts.vertical_crs),
-            path);
+    const auto crs = difference_of({crs_, vertical_crs_}, {facts.crs, facts.vertical_crs});
+    if (crs) {
+      refuse("this file declares " + crs->second + ", and '" + path_ + "' declares " + crs->first +
+                 "; transform it first, or say with --a-srs what all of them are in",
+             path);
+    }
   }
   if (units_ != facts.units) {
-    refuse("this file has other units than '" + path_ +
-               "', or one of them names none; bring them to one unit first",
+    refuse("this file declares " + named(facts.units) + ", and '" + path_ + "' declares " +
+               named(units_) + "; bring them to one unit first",
            path);
   }
 }
@@ -114,7 +116,9 @@ std::vector<PointPortion> cut_into_portions(const std::vector<std::string>& inpu
       continue;
     }
     const auto stream = open_point_stream(path, options.points, options.nodata);
-    agreement.add(stream->facts(), path);
+    if (stream->total() > 0 || declares_crs(stream->facts())) {
+      agreement.add(stream->facts(), path);
+    }
     cut(whole, *stream, size_of_portion(path, format, *stream, sizes), portions);
   }
   return portions;

@@ -33,7 +33,13 @@ struct PortionSizes {
 /// True for a pipe, a socket or a device: what is read of it is gone.
 [[nodiscard]] bool can_be_read_once_only(const std::string& path);
 
-/// Refuses files that do not go together. Wants all files, in their order.
+/// True where a source names a CRS, horizontal or vertical.
+[[nodiscard]] inline bool declares_crs(const PointStreamFacts& facts) {
+  return !facts.crs.empty() || !facts.vertical_crs.empty();
+}
+
+/// Refuses files that do not go together. Wants all files, in their order, but for those without a
+/// point that declare no CRS.
 class SourceAgreement {
  public:
   explicit SourceAgreement(const SourceOptions& options) : options_(&options) {}
@@ -45,8 +51,6 @@ class SourceAgreement {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }  ///< The first one's.
 
  private:
-  void require(bool is_same, const std::string& path) const;
-
   const SourceOptions* options_;
   bool has_first_ = false;
   std::string crs_, vertical_crs_, path_;  ///< Without CRSs where `a_srs` replaces them.

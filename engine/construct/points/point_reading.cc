@@ -198,6 +198,7 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
   SourceAgreement agreement(options);
   WholeTexts texts(inputs);
   std::vector<std::uint64_t> points_of(inputs.size());
+  std::vector<bool> agrees(inputs.size(), false);
   const std::size_t sample_step = portions.size() * EvenSample::kMost / kMostSamples + 1;
   for (std::size_t i = 0; i < portions.size(); ++i) {
     const SpooledPortion& p = portions[i];
@@ -205,7 +206,6 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
     PortionRead read;
     file.values(read);
     if (i == 0 || portions[i - 1].portion.input != p.portion.input) {
-      agreement.add(read.source, inputs[p.portion.input]);
       reading.scan.add_source(read.source);
     }
     const std::uint64_t lines_before = texts.lines_of(p.portion.input);
@@ -213,6 +213,11 @@ PointReading join_portions(const std::vector<std::string>& inputs, const SourceO
       texts.add(p.portion.input, *read.rows);
     }
     points_of[p.portion.input] += read.extent.points + read.left_out.total();
+    if (!agrees[p.portion.input] && (points_of[p.portion.input] > 0 || declares_crs(read.source))) {
+      agreement.add(read.source, inputs[p.portion.input]);
+      agrees[p.portion.input] = true;
+    }
+    read.extent.far.set_input(p.portion.input);
     reading.scan.add(read.extent);
     reading.left_out.join(read.left_out);
     reading.classes.join(read.classes);

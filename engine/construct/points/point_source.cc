@@ -153,13 +153,14 @@ PointBuckets::Index PointSource::begin_index(const PointGrid& grid) const {
   index.warnings = reading_->warnings;
   set_crs(index.frame, resolve_source_crs({reading_->crs, reading_->vertical_crs}, options_,
                                           reading_->crs_path, index.warnings));
+  warn_of_no_crs(index.frame, context, index.warnings);
   set_units(index.frame, reading_->units, options_.a_srs.empty(), context);
   index.frame.map = grid.map();
   require_resolvable(index.frame.map, grid.east - grid.west, grid.north - grid.south,
                      "give a coarser --resolution", context);
   require_latitudes(index.frame, grid.north - grid.south, context);
   require_longitudes(index.frame, grid.east - grid.west, grid.is_split, context);
-  index.warnings.join(reading_->scan.warnings());
+  index.warnings.join(reading_->scan.warnings(inputs_, false));
   index.counts.source_points = reading_->scan.points();
   index.counts.left_out = reading_->left_out;
   index.counts.classes = reading_->classes;

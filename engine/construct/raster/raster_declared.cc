@@ -164,6 +164,12 @@ GDALDatasetUniquePtr open_raster(const std::string& path, SourceWarnings& warnin
   if (VSIStatL(path.c_str(), &status) != 0) {
     throw Error(ErrorCode::not_found, session.explain("there is no such raster"), path);
   }
+  if (VSI_ISDIR(status.st_mode)) {
+    refuse(
+        "this folder holds no file *.las or *.laz, and is no raster or layer that GDAL reads; "
+        "name the files of the source, or the folder that they are in",
+        path);
+  }
   require_readable(path);
   refuse(session.explain("this is neither a raster nor a layer that GDAL reads; LAS, text and "
                          "TINs are known by their names: .las, .laz, .csv, .xyz, .txt, .ply, .obj, "

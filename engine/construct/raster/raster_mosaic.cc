@@ -71,8 +71,10 @@ std::string mismatch(const RasterShape& a, const RasterShape& b, bool compare_cr
   if (!a.georeferenced || !b.georeferenced) {
     return "several rasters make one terrain only where each has a geotransform";
   }
-  if (compare_crs && !is_same_crs(a.crs, b.crs)) {
-    return std::string("its CRS is not that of the first raster") + kOneGrid +
+  const auto crs = compare_crs ? difference_of({a.crs, ""}, {b.crs, ""}) : std::nullopt;
+  if (crs) {
+    return "its CRS is not that of the first raster: it declares " + crs->second +
+           ", and the first one " + crs->first + kOneGrid +
            ", or name the CRS of all by --a-srs where they merely say it otherwise";
   }
   if (a.scale != b.scale || a.offset != b.offset) {

@@ -138,6 +138,7 @@ RasterSource RasterSource::open(const std::vector<std::string>& paths, const Sou
   source.valid_samples_ = found.fit.count;
   source.warnings_.join(warnings_that_count(source.mosaic_.warnings(), options));
   source.warn_of(found.suspects);
+  warn_of_no_crs(source.frame_, paths.front(), source.warnings_);
   return source;
 }
 

@@ -21,6 +21,7 @@ using Bytes = std::vector<unsigned char>;
 
 constexpr std::size_t kHeaderBytes[] = {227, 227, 227, 235, 375};  // by minor version
 constexpr int kCompressedBit = 0x80;                               // of the point format
+constexpr int kEarlyBit = 0x40;  // likewise: by experimental programs
 constexpr std::uint32_t kFormatBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
 [[noreturn]] void refuse_las(const LasFile& file, const std::string& sentence) {
@@ -42,6 +43,12 @@ void check_version(const LasFile& file, int major, int minor) {
 
 void check_format(const LasFile& file, const LasHeader& h) {
   const int format = h.point_format;
+  if (h.is_compressed && (format & kEarlyBit) != 0) {
+    refuse_las(file,
+               "bits 7 and 6 of its point format are set, as experiments before LASzip 1.0 marked "
+               "compressed points; these are not read; get the file as LAS, or as LAZ of a later "
+               "program");
+  }
   if (format > 10) {
     refuse_las(file, "the header names point format " + std::to_string(format) +
                          "; LAS has formats 0 to 10; the file is damaged");

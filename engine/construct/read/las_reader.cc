@@ -32,7 +32,8 @@ laz::CompressedPoints compressed_points(const LasFile& file, const LasHeader& he
        [&file](std::uint64_t offset, std::span<unsigned char> into) { file.read(offset, into); }},
       {},
       header.first_point,
-      header.points};
+      header.points,
+      header.extended_records > 0 ? header.first_extended : 0};
   std::vector<unsigned char> layout;
   walk_records(file, records_before_points(file, header), [&](const LasRecordHead& record) {
     if (record.user == laz::kLayoutUser && record.id == laz::kLayoutRecord) {
@@ -214,14 +215,18 @@ std::uint64_t LasReader::most_parts() const noexcept {
 
 SourceWarnings LasReader::warnings() const {
   SourceWarnings all = warnings_;
-  const auto add = [&](const char* kind, const char* message, std::uint64_t count) {
-    if (count > 0) {
-      all.add({kind, message, path_, "", 0, count});
+  const auto add = [&](const char* kind, const char* message, const OddPoints& odd) {
+    if (odd.count > 0) {
+      all.add({.kind = kind,
+               .message = message,
+               .file = path_,
+               .count = odd.count,
+               .point = odd.first});
     }
   };
   add("las_noise",
-      "a point is of class 7 or 18, noise, and is built from all the same; --class names those to "
-      "be kept",
+      "a point is of class 7 or 18, noise, and is built from all the same; --class '!noise' leaves "
+      "such points out",
       noise_);
   add("las_box",
       "a point lies outside of the box that the header says all points are in; it is "
@@ -246,14 +251,14 @@ void LasReader::count_class(const unsigned char* record) {
   counted_.overlap += is_old_ ? cls == kOverlapClass : (record[15] & 0x08) != 0;
 }
 
-/// Counts what there is to be warned of in a point that is handed out.
-void LasReader::look_at(const unsigned char* record) {
+/// Counts what there is to be warned of in a point that is handed out; points count from 1.
+void LasReader::look_at(const unsigned char* record, std::uint64_t point) {
   const int cls = class_of(record);
-  noise_ += !names_classes_ && (cls == 7 || (cls == 18 && !is_old_)) ? 1 : 0;
+  noise_.add(!names_classes_ && (cls == 7 || (cls == 18 && !is_old_)), point);
   if (returns_ != ReturnChoice::kAll) {
     const int number = record[14] & (is_old_ ? 0x07 : 0x0f);
     const int count = is_old_ ? (record[14] >> 3) & 0x07 : record[14] >> 4;
-    odd_returns_ += number == 0 || number > count ? 1 : 0;
+    odd_returns_.add(number == 0 || number > count, point);
   }
   if (has_box_) {
     const std::span<const unsigned char> bytes(record, 12);
@@ -262,7 +267,7 @@ void LasReader::look_at(const unsigned char* record) {
       const auto steps = static_cast<double>(las_value<std::int32_t>(bytes, 4 * i));
       is_out = is_out || steps < low_[i] || steps > high_[i];
     }
-    out_of_box_ += is_out ? 1 : 0;
+    out_of_box_.add(is_out, point);
   }
 }
 
@@ -306,7 +311,7 @@ bool LasReader::next(std::vector<SourcePoint>& batch) {
         left_out_.add(*reason);
         continue;
       }
-      look_at(record);
+      look_at(record, read_ + i + 1);
       const std::span<const unsigned char> bytes(record, 12);
       batch.push_back({axes_[0].decimal(las_value<std::int32_t>(bytes, 0)),
                        axes_[1].decimal(las_value<std::int32_t>(bytes, 4)),

@@ -101,7 +101,7 @@ class LasReader final : public PointStream {
   void warn(const char* kind, std::string message);
   void check_counts();
   [[nodiscard]] int class_of(const unsigned char* record) const noexcept;
-  void look_at(const unsigned char* record);
+  void look_at(const unsigned char* record, std::uint64_t point);
   [[nodiscard]] bool is_wanted_return(const unsigned char* record) const;
   void count_class(const unsigned char* record);
   [[nodiscard]] std::optional<LeftOutReason> why_unwanted(const unsigned char* record);
@@ -126,7 +126,15 @@ class LasReader final : public PointStream {
   bool has_box_ = false, names_classes_ = false;
   /// Steps of the header's box, one more on each side.
   std::array<double, 3> low_{}, high_{};
-  std::uint64_t noise_ = 0, out_of_box_ = 0, odd_returns_ = 0;  ///< Points that were handed out.
+  /// Points that were handed out, and the number of the first of them.
+  struct OddPoints {
+    std::uint64_t count = 0, first = 0;
+    void add(bool is_one, std::uint64_t point) noexcept {
+      first = is_one && count == 0 ? point : first;
+      count += is_one ? 1 : 0;
+    }
+  };
+  OddPoints noise_, out_of_box_, odd_returns_;
 };
 
 }  // namespace ptin

@@ -167,7 +167,7 @@ void GridReader::choose_grid() {
   scan.add_source({});
   named_->vertices.visit([&](const NamedVertex& v) { scan.add(v.point()); }, reading_.stop);
   tin_.grid = scan.grid();
-  tin_.warnings.join(scan.warnings(true));
+  tin_.warnings.join(scan.warnings({path_}, true));
   order_.emplace(tin_.grid.largest());
 }
 

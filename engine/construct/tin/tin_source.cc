@@ -176,6 +176,7 @@ TinTriangles TinTriangles::read(const std::string& path, const SourceOptions& op
   TinOnGrid tin = read_on_grid(path, {options, memory, stop, progress});
   TinTriangles to;
   set_crs(to.frame_, resolve_source_crs({tin.crs, tin.vertical_crs}, options, path, tin.warnings));
+  warn_of_no_crs(to.frame_, path, tin.warnings);
   set_units(to.frame_, tin.units, options.a_srs.empty(), path);
   to.frame_.map = tin.grid.map();
   require_resolvable(to.frame_.map, tin.grid.east - tin.grid.west, tin.grid.north - tin.grid.south,

@@ -136,6 +136,56 @@ TEST(LazReader, FindsWhatLas14HidesInExtraBytes) {
   EXPECT_THROW(told_by(nameless), Error);
 }
 
+/// With an extended record behind all that is there.
+std::string with_record_behind(std::string laz, const std::string& content) {
+  const std::uint64_t at = laz.size(), bytes = content.size();
+  const std::uint32_t count = 1;
+  std::string head(60, '\0');
+  std::memcpy(head.data() + 20, &bytes, sizeof bytes);
+  std::memcpy(laz.data() + 235, &at, sizeof at);
+  std::memcpy(laz.data() + 243, &count, sizeof count);
+  return laz + head + content;
+}
+
+TEST(LazReader, FindsTheTableOfAStreamedFileBeforeTheRecordsBehindIt) {
+  for (const int format : {1, 6}) {
+    std::string las = made_las(format, 1, 900, 5);
+    LazOptions options = options_for(format);
+    options.table_place_at_end = true;
+    if (format < 6) {  // records behind the points came with LAS 1.4
+      LasFileMaker maker;
+      maker.minor = 4;
+      maker.format = 1;
+      for (int i = 0; i < 900; ++i) maker.points.push_back({3 * i, i * i, i});
+      las = maker.bytes();
+    }
+    const std::string laz = laz_of(las, options);
+    EXPECT_EQ(told_by(laz), told_by(las)) << format;
+    for (const std::string& content :
+         {std::string("a record"), std::string(40, '\0'), std::string()}) {
+      EXPECT_EQ(told_by(with_record_behind(laz, content)), told_by(las)) << format;
+    }
+    const std::string cut = laz.substr(0, laz.size() - 8);
+    try {
+      told_by(with_record_behind(cut, "a record"));
+      ADD_FAILURE() << "nobody says where the table is";
+    } catch (const Error& e) {
+      EXPECT_NE(e.message().find("cannot go back"), std::string::npos) << e.message();
+    }
+  }
+}
+
+TEST(LazReader, RefusesWhatExperimentsBeforeLasZipMarkedAsCompressed) {
+  std::string laz = laz_of(made_las(1, 0, 20, 5), options_for(1));
+  laz[104] = static_cast<char>(laz[104] | 0x40);
+  try {
+    told_by(laz);
+    ADD_FAILURE() << "such points are not read";
+  } catch (const Error& e) {
+    EXPECT_NE(e.message().find("before LASzip 1.0"), std::string::npos) << e.message();
+  }
+}
+
 TEST(LazReader, TakesTheCrsFromRecords) {
   LasFileMaker las;
   las.minor = 4;

@@ -71,7 +71,7 @@ def build(
         a build of files. One of an array leaves nothing behind.
 
     >>> heights = np.add.outer(np.arange(50.0), np.arange(60.0))
-    >>> report = build(heights, "plane.ptin", transform=(10, 0, 0, 0, -10, 500), overwrite=True)
+    >>> report = build(heights, "plane.ptin", transform=(10, 0, 0, 0, -10, 500), a_srs="EPSG:32611", overwrite=True)
     >>> report.samples, report.warnings
     (3000, [])
     """

@@ -36,6 +36,16 @@ Path = Union[str, "os.PathLike[str]"]
 Memory = Union[float, str, None]
 Window = Optional[Sequence[float]]
 
+_forks = 0  # of this process since its first one, so that a terrain knows whether it was opened in it
+
+
+def _count_fork() -> None:
+    global _forks
+    _forks += 1
+
+
+os.register_at_fork(after_in_child=_count_fork)
+
 _UNITS_OF_MEMORY = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 
 
@@ -210,22 +220,25 @@ class Terrain:
             raise InvalidArgument(f"a timeout is seconds, above 0, and not {timeout!r}")
         self._timeout = timeout
         self._opened: Any = _ptin.open(name, timeout)
-        self._pid = os.getpid()
+        self._forks = _forks
         self._name = name if "://" in name or name.startswith("/vsi") else os.path.abspath(name)
         self._memory = _bytes(memory)
+        self._plain = _ptin.Asked(None, None, self._memory)
 
     @property
     def _terrain(self) -> Any:
         if self._opened is None:
             raise ValueError("this terrain is closed")
-        if self._pid != os.getpid():  # a fork: connections and locks are the parent's
+        if self._forks != _forks:  # connections and locks are the parent's
             _ptin.never_close(self._opened)
-            self._opened, self._pid = _ptin.open(self._name, self._timeout), os.getpid()
+            self._opened, self._forks = _ptin.open(self._name, self._timeout), _forks
         if self._opened.is_stopped:  # by Ctrl-C, while it waited for a server
             self._opened = _ptin.open(self._name, self._timeout)
         return self._opened
 
     def _asked(self, error: Optional[float], vertices: Optional[int], memory: Memory = None) -> Any:
+        if error is None and vertices is None and memory is None:
+            return self._plain
         if error is not None and (isinstance(error, (str, bytes)) or np.ndim(error) != 0):
             raise TypeError(f"an error is a number, in the unit of heights, and not {error!r}")
         limit = self._memory if memory is None else _bytes(memory)
@@ -269,7 +282,7 @@ class Terrain:
 
     def close(self) -> None:
         """Closes the file; questions that are being answered end as if it were open."""
-        if self._opened is not None and self._pid != os.getpid():
+        if self._opened is not None and self._forks != _forks:
             _ptin.never_close(self._opened)
         self._opened = None
 
