@@ -82,6 +82,12 @@ export function trianglesOf(mesh: MeshView, facts: Facts): string[] {
   return all.sort();
 }
 
+/** The same of positions on the map and their indices. */
+export function trianglesOfArrays({ positions, indices }: { positions: Float64Array; indices: Uint32Array }): string[] {
+  const corner = (v: number): Corner => [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
+  return Array.from({ length: indices.length / 3 }, (_, t) => told([0, 1, 2].map((i) => corner(indices[3 * t + i])))).sort();
+}
+
 /** The same of a binary PLY that the program wrote: doubles, then a count and three indices a triangle. */
 export function trianglesOfPly(path: string): string[] {
   const bytes = readFileSync(path);
