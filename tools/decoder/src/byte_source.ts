@@ -170,7 +170,7 @@ function summed(sum: number, bytes: Uint8Array): number {
 
 /** Where the bytes of a stream may be: all at hand, or coming. */
 export type Bytes =
-  | ArrayBuffer | Uint8Array | Blob | Response | ReadableStream<Uint8Array> | AsyncIterable<Uint8Array> | Iterable<Uint8Array>;
+  | ArrayBuffer | ArrayBufferView | Blob | Response | ReadableStream<Uint8Array> | AsyncIterable<Uint8Array> | Iterable<Uint8Array>;
 
 /** Bytes that somebody else has; theirs stay as they are. */
 export class GivenBytes implements ByteSource {
@@ -195,18 +195,22 @@ export class GivenBytes implements ByteSource {
   rest(): void {}
 }
 
+/** Kinds are told by what they can do: those of other realms, as of test frames, are instances of other classes. */
 function readerOf(given: Bytes): () => Promise<Uint8Array | null> {
-  if (given instanceof Response) {
+  if (typeof given !== 'object' || given === null) throw new TypeError('openBytes() takes bytes, or where they come from; an address is opened by openFile()');
+  if (ArrayBuffer.isView(given)) return iterated([new Uint8Array(given.buffer, given.byteOffset, given.byteLength)]);
+  if ('byteLength' in given) return iterated([new Uint8Array(given)]);
+  if ('ok' in given) {
     if (!given.ok) throw new Problem(`The host answered ${given.status}`, 'That is no stream.', given.status);
-    return readerOf(given.body ?? []);
+    return given.body === null ? iterated([]) : readerOf(given.body);
   }
-  if (given instanceof Blob) return readerOf(given.stream());
-  if (given instanceof ArrayBuffer) return readerOf([new Uint8Array(given)]);
-  if (given instanceof Uint8Array) return readerOf([given]);
-  if ('getReader' in given) {
-    const reader = given.getReader();
-    return async () => (await reader.read()).value ?? null;
-  }
+  if ('stream' in given) return readerOf(given.stream());
+  if (!('getReader' in given)) return iterated(given);
+  const reader = given.getReader();
+  return async () => (await reader.read()).value ?? null;
+}
+
+function iterated(given: AsyncIterable<Uint8Array> | Iterable<Uint8Array>): () => Promise<Uint8Array | null> {
   const iterator = Symbol.asyncIterator in given ? given[Symbol.asyncIterator]() : given[Symbol.iterator]();
   return async () => {
     const { done, value } = await iterator.next();

@@ -4,6 +4,7 @@
 // they are made of, for what keeps cameras and budgets of its own, as the viewer does.
 import { type Bytes, GivenBytes, HostedBytes } from './byte_source.js';
 import { type ModuleSource, loadModule } from './load.js';
+import { until } from './requests.js';
 import { ServedTerrain } from './served_terrain.js';
 import { StreamTerrain } from './stream_terrain.js';
 
@@ -20,7 +21,7 @@ export interface OpenOptions {
  * @param url  Of the terrain: `http://127.0.0.1:8080/collections/ID`
  */
 export async function openServed(url: string | URL, { signal, wasm }: OpenOptions = {}): Promise<ServedTerrain> {
-  return ServedTerrain.open(await loadModule(wasm), String(url).replace(/\/$/, ''), signal);
+  return ServedTerrain.open(await until(loadModule(wasm), signal), String(url).replace(/\/$/, ''), signal);
 }
 
 /**
@@ -31,13 +32,13 @@ export async function openFile(url: string | URL, { signal, wasm }: OpenOptions 
   const source = new HostedBytes(String(url));
   const opening = source.open(signal);
   opening.catch(() => undefined);
-  const module = await loadModule(wasm);
+  const module = await until(loadModule(wasm), signal);
   return StreamTerrain.open(module, await opening, signal);
 }
 
 /** Opens a stream that `ptin stream` wrote: bytes at hand, or as they come; of several the first. Throws as Terrain.refine() does. */
 export async function openBytes(bytes: Bytes, { signal, wasm }: OpenOptions = {}): Promise<StreamTerrain> {
-  return StreamTerrain.open(await loadModule(wasm), new GivenBytes(bytes), signal);
+  return StreamTerrain.open(await until(loadModule(wasm), signal), new GivenBytes(bytes), signal);
 }
 
 export { type ByteSource, type Bytes, GivenBytes, HostedBytes } from './byte_source.js';

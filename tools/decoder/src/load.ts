@@ -3,13 +3,14 @@
 // The engine's stream reader in WebAssembly, which lies beside this file.
 import { Problem } from './requests.js';
 
+type Bytes = ArrayBuffer | ArrayBufferView;
 /** Bytes, the answer that has them, or their address. */
-type Uncompiled = BufferSource | Response | URL | string;
+type Uncompiled = Bytes | Response | URL | string;
 /** The module, compiled or not, or its address. */
 export type ModuleSource = WebAssembly.Module | Uncompiled;
 
 /** How files are read where fetch() reads none: node.ts. */
-export const files: { read: ((url: URL) => Promise<BufferSource>) | null } = { read: null };
+export const files: { read: ((url: URL) => Promise<Bytes>) | null } = { read: null };
 
 let own: Promise<WebAssembly.Module> | null = null;
 
@@ -34,17 +35,20 @@ async function compiled(source: ModuleSource): Promise<WebAssembly.Module> {
   if (!isModule(bytes)) {
     throw new Problem('The decoder is something else', `${place} is no WebAssembly. Give the place of decoder.wasm as { wasm: url }.`);
   }
-  return WebAssembly.compile(bytes);
+  return WebAssembly.compile(bytes as BufferSource).catch((error: unknown) => {
+    throw new Problem(
+      'The decoder cannot be compiled', `${String(error)} Where a page has a Content-Security-Policy, it needs script-src 'wasm-unsafe-eval'.`);
+  });
 }
 
-function isModule(bytes: BufferSource): boolean {
+function isModule(bytes: Bytes): boolean {
   const view = ArrayBuffer.isView(bytes) ? new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength) : new Uint8Array(bytes);
   return String.fromCharCode(...view.subarray(0, 4)) === '\0asm';
 }
 
-async function bytesOf(source: Uncompiled): Promise<[bytes: BufferSource, place: string]> {
+async function bytesOf(source: Uncompiled): Promise<[bytes: Bytes, place: string]> {
   if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return [source, 'What was given'];
-  if (source instanceof URL && source.protocol === 'file:' && files.read !== null) return [await files.read(source), source.href];
+  if (!(source instanceof Response) && files.read !== null && /^file:/.test(String(source))) return [await files.read(new URL(source)), String(source)];
   const response = source instanceof Response ? source : await fetch(source).catch(() => null);
   const place = response?.url || String(source);
   if (response === null || !response.ok) {

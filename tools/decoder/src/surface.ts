@@ -13,16 +13,17 @@ export interface LocalFrame {
   scale: readonly [x: number, y: number, height: number];
 }
 
-/** Writes three numbers a vertex. A vertex without a height, which no triangle of the surface has, gets the one of the origin. */
+/** Writes three numbers a vertex. A vertex without a height, which no triangle of the surface has, gets the terrain's least one. */
 function place<Numbers extends Float32Array | Float64Array>(
   to: Numbers, mesh: MeshView, facts: Facts, { origin, scale }: LocalFrame,
 ): Numbers {
   const { vertices, vertexCount, hasHeight } = mesh;
+  const least = facts.minHeight <= facts.maxHeight ? facts.minHeight : 0;
   const east = facts.originX - origin[0], north = facts.originY - origin[1];
   for (let v = 0, from = 0, at = 0; v < vertexCount; ++v, from += vertexWords, at += 3) {
     to[at] = (east + facts.stepX * vertices[from]) * scale[0];
     to[at + 1] = (north + facts.stepY * vertices[from + 1]) * scale[1];
-    to[at + 2] = hasHeight[v] !== 0 ? (heightOf(facts, vertices[from + 2]) - origin[2]) * scale[2] : 0;
+    to[at + 2] = ((hasHeight[v] !== 0 ? heightOf(facts, vertices[from + 2]) : least) - origin[2]) * scale[2];
   }
   return to;
 }

@@ -28,7 +28,7 @@ export type State = 'refining' | 'reached' | 'vertices' | 'bytes' | 'complete' |
 export interface Mesh<Positions extends Float32Array | Float64Array = Float32Array> {
   /**
    * x, y, z of each vertex. Local: metres east, north and up from `Terrain.frame.origin` (map units where no ground is known).
-   * Map: the CRS of the file, z the height. A vertex that no triangle has may lie at the height of the origin, or 0.
+   * Map: the CRS of the file, z the height. A vertex in a void, which no triangle has, lies at the least height.
    */
   positions: Positions;
   /** Three vertices of each triangle, counter-clockwise seen from above. Where the terrain has no data there are none. */

@@ -3,13 +3,15 @@
 // Terrains as clients see them: against the program at the same error, with budgets, signals, damage, and a service.
 import assert from 'node:assert/strict';
 import { createReadStream, readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { test } from 'node:test';
+import { runInNewContext } from 'node:vm';
 import {
   type Bytes, DecodeError, Problem, type RefineOptions, type StreamTerrain, type Step, type Terrain, certifiedAt, certifiedOf, loadModule,
   mapCrsOf, openBytes, openServed,
 } from '../src/index';
 import { host } from './host.mjs';
-import { decoderModule, file, folder, made, ptin, served, terrain, trianglesOfArrays, trianglesOfPly } from './support';
+import { assets, decoderModule, file, folder, made, ptin, served, terrain, trianglesOfArrays, trianglesOfPly } from './support';
 
 const wasm = decoderModule();
 const { store, stream } = terrain('mountains_257', '--error', '1');
@@ -45,19 +47,22 @@ test('bytes from anywhere are the surface of the program, triangle by triangle',
   const sources: Bytes[] = [
     bytes, bytes.slice().buffer, new Blob([bytes]), new Response(bytes), new Blob([bytes]).stream(), trickled(bytes),
     [bytes.subarray(0, 5000), bytes.subarray(5000)], createReadStream(stream),
+    ...runInNewContext('const of = new Uint8Array(given); [of, of.buffer]', { given: bytes }) as Bytes[],
   ];
   for (const source of sources) {
     const step = await (await from(source)).refined({ positions: 'map' });
     assert.deepEqual([step.state, step.certified?.error, step.bytes], ['complete', 1, bytes.length]);
     assert.deepEqual(trianglesOfArrays(step), refined(store, '--error', '1'));
   }
+  await assert.rejects(from(stream as unknown as Bytes), /openBytes\(\) takes bytes[^]*openFile\(\)/);
 });
 
 test('voids stay open', async () => {
   const { store: voids, stream: stillVoids } = made('voids', '--error', '5');
   const opened = await from(readFileSync(stillVoids));
   assert.deepEqual(trianglesOfArrays(await opened.refined({ positions: 'map' })), refined(voids, '--error', '5'));
-  assert.ok(opened.mesh().positions.every(Number.isFinite));
+  const heights = opened.mesh({ positions: 'map' }).positions.filter((_, i) => i % 3 === 2);
+  assert.deepEqual([Math.min(...heights), Math.max(...heights)], opened.heights, 'a vertex in a void spoils no box');
 });
 
 test('steps become finer, and stop at an error, at a budget, and where bytes end', async () => {
@@ -149,6 +154,8 @@ test('damage is one clear error, wherever it is, and what came before stays', as
 test('a decoder that is something else, or not there, is a problem in a sentence', async () => {
   await assert.rejects(loadModule(new TextEncoder().encode('<!doctype html>')), { name: 'Problem', message: /no WebAssembly[^]*\{ wasm: url \}/ });
   await assert.rejects(loadModule('http://127.0.0.1:9/decoder.wasm'), { name: 'Problem', message: /127\.0\.0\.1:9\/decoder\.wasm/ });
+  const half = readFileSync(join(assets, 'decoder.wasm')).subarray(0, 40000);
+  await assert.rejects(loadModule(half), { name: 'Problem', message: /wasm-unsafe-eval/ });
   assert.equal(await loadModule(wasm), wasm);
 });
 
