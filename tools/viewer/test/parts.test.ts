@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The small parts: numbers for people, permalinks, CSV, kept bytes, windows, frames of degrees, costs.
-import { certifiedAt, type CertifiedPart, certifiedWithin, toldBy, widened, type Window } from 'ptin-decoder';
+import { certifiedAt, type CertifiedPart, certifiedWithin, HostedBytes, toldBy, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
 import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
+import { FileView } from '../src/file_view';
 import { Frame } from '../src/frame';
 import { defaults, fromHash, toHash } from '../src/permalink';
 import { csvOf } from '../src/plot';
 import { certaintyOf, costOf } from '../src/service';
 import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
+import { host } from '../../decoder/test/host.mjs';
 import { decoded, decoderModule, terrain } from '../../decoder/test/support';
 
 test('numbers', () => {
@@ -134,6 +136,31 @@ test('what an answer cost, in words', () => {
   const response = new Response(null, { headers: { 'Server-Timing': 'query;dur=28.94;desc="pages=126 stars=0 records=3961"' } });
   assert.equal(costOf(response), '126 pages, 29 ms');
   assert.equal(costOf(new Response(null)), '');
+});
+
+test('a file whose connection broke is read on', async () => {
+  const bytes = readFileSync(terrain('mountains_257').stream);
+  let answers = 0;
+  const web = await host('.', {
+    answer: (_, response) => {
+      response.writeHead(200, { 'Content-Length': bytes.length, ETag: '"a"' });
+      if (++answers === 1) response.write(bytes.subarray(0, 60000), () => { response.destroy(); });
+      else response.end(bytes);
+      return true;
+    },
+  });
+  const faults: unknown[] = [];
+  try {
+    const view = await new Promise<FileView>((resolve) => {
+      const opened = new FileView('m', new HostedBytes(`${web.url}m.ptins`).open(), decoderModule(), '', 1e9, {
+        grown: () => undefined, settled: () => { resolve(opened); }, failed: (error) => { faults.push(error); }, mended: () => undefined,
+      });
+      void opened.run();
+    });
+    assert.deepEqual([view.progress.state, faults, answers], ['complete', [], 2]);
+  } finally {
+    await web.close();
+  }
 });
 
 test('an answer that tells no certificate has none', () => {
