@@ -19,7 +19,7 @@ const kept = 100;
 interface Version {
   etag: string | null;
   modified: string | null;
-  /** 0: the host does not say, or says it of packed bytes. */
+  /** 0: the host does not say, or says it of packed bytes. Pages are not told whether bytes of another host are packed. */
   bytesInAll: number;
 }
 
@@ -47,7 +47,7 @@ export class HostedBytes implements ByteSource {
 
   /** Asks the host, so that its refusal is known before anything is read. Throws Problem. */
   async open(signal?: AbortSignal): Promise<this> {
-    this.reader ??= await this.connect(signal);
+    if (this.reader === null) await this.connect(signal);
     return this;
   }
 
@@ -62,7 +62,12 @@ export class HostedBytes implements ByteSource {
         this.hasEnded = true;
       } catch (error) {
         await this.close();
-        await tries.next(error, signal);
+        if (isBehindEnd(error)) {
+          if (this.bytes !== this.bytesInAll) throw replaced(416);
+          this.hasEnded = true;
+        } else {
+          await tries.next(error, signal);
+        }
       }
     }
     return null;
@@ -80,30 +85,22 @@ export class HostedBytes implements ByteSource {
   }
 
   private async received(signal?: AbortSignal): Promise<Uint8Array | null> {
-    if (this.bytes > 0 && this.bytes === this.bytesInAll) return null;
     await this.open(signal);
     const value = this.over ?? (await until(this.reader!.read(), signal)).value;
     this.over = null;
-    if (value === undefined) {
-      // A host that breaks off may end its answer as if that was all.
-      if (this.bytes < this.bytesInAll) throw new Problem('The connection broke', 'The host sent less than it said.');
-      return null;
-    }
+    if (value === undefined) return null;
     this.bytes += value.length;
     if (this.isUnnamed) this.sum = summed(this.sum, value);
     return value;
   }
 
-  private async connect(signal?: AbortSignal): Promise<ReadableStreamDefaultReader<Uint8Array>> {
+  private async connect(signal?: AbortSignal): Promise<void> {
     const headers = this.wantedRange();
-    const response = await opened(this.url, { signal: signal ?? null, headers }).catch((error: unknown) => {
-      throw error instanceof Problem && error.status === 416 ? replaced(416) : error;
-    });
+    const response = await opened(this.url, { signal: signal ?? null, headers });
     if (response.body === null) throw new Problem('The terrain is empty', 'The host answered without any bytes.', response.status);
+    this.reader = response.body.getReader();
     this.compare(response, 'If-Range' in headers && response.status === 206);
-    const reader = response.body.getReader();
-    if (this.bytes > 0 && response.status !== 206) await this.passOver(reader, signal);
-    return reader;
+    if (this.bytes > 0 && response.status !== 206) await this.passOver(this.reader, signal);
   }
 
   /** The host names neither version of its file. */
@@ -157,6 +154,9 @@ function isSame(before: Version, now: Version, isSure: boolean): boolean {
   const told = (['etag', 'modified'] as const).filter((name) => before[name] !== null && now[name] !== null);
   return told.every((name) => before[name] === now[name]) && (isSure || told.length > 0);
 }
+
+/** The host has nothing at the place from which it was asked on. */
+const isBehindEnd = (error: unknown): boolean => error instanceof Problem && error.status === 416;
 
 /** A status that is no failure of the host: trying again would not help. */
 const replaced = (status: number): Problem => new Problem('The terrain was replaced', 'The host has another file now; open it anew.', status);

@@ -5,6 +5,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import type { IncomingMessage, ServerResponse } from 'node:http';
 import { test } from 'node:test';
+import { deflateSync } from 'node:zlib';
 import { openBytes, openFile } from '../src/index';
 import { host } from './host.mjs';
 import { decoderModule, folder, isSameMesh, terrain } from './support';
@@ -102,6 +103,18 @@ test('a connection that breaks in the middle is taken up, by a range or from the
   });
   // A host that is busy in between.
   await hosted({ breaks, status: (answer) => (answer === 1 ? 503 : 200) }, isWhole);
+});
+
+test('a file that was cut ends where it ends, whatever its host says of its length', async () => {
+  const cut = bytes.subarray(0, 40000);
+  await hosted({ given: () => cut }, async (url, asked) => {
+    const opened = await openFile(url, { wasm });
+    for (let i = 0; i < 2; ++i) assert.equal((await opened.refined()).state, 'cut');
+    assert.equal(asked.length, 1);
+  });
+  // A length of packed bytes that a page cannot know to be one.
+  const packed = deflateSync(bytes);
+  await hosted({ given: () => packed, names: () => ({ ETag: '"a"', 'Content-Encoding': 'deflate' }), breaks: (answer) => (answer === 0 ? 30000 : Infinity) }, isWhole);
 });
 
 test('a host that is gone for good is given up after few tries, and what came stays', async () => {
