@@ -158,8 +158,10 @@ function isSame(before: Version, now: Version, isSure: boolean): boolean {
 /** The host has nothing at the place from which it was asked on. */
 const isBehindEnd = (error: unknown): boolean => error instanceof Problem && error.status === 416;
 
-/** A status that is no failure of the host: trying again would not help. */
-const replaced = (status: number): Problem => new Problem('The terrain was replaced', 'The host has another file now; open it anew.', status);
+/** Of a status that is no failure of the host: trying again would not help. */
+function replaced(status: number): Problem {
+  return new Problem('The terrain was replaced', 'The host has another file now; open it anew.', status);
+}
 
 /** FNV-1a of 32 bits, byte by byte. */
 const firstSum = 0x811c9dc5;
@@ -197,7 +199,9 @@ export class GivenBytes implements ByteSource {
 
 /** Kinds are told by what they can do: those of other realms, as of test frames, are instances of other classes. */
 function readerOf(given: Bytes): () => Promise<Uint8Array | null> {
-  if (typeof given !== 'object' || given === null) throw new TypeError('openBytes() takes bytes, or where they come from; an address is opened by openFile()');
+  if (typeof given !== 'object' || given === null) {
+    throw new TypeError('openBytes() takes bytes, or where they come from; an address is opened by openFile()');
+  }
   if (ArrayBuffer.isView(given)) return iterated([new Uint8Array(given.buffer, given.byteOffset, given.byteLength)]);
   if ('byteLength' in given) return iterated([new Uint8Array(given)]);
   if ('ok' in given) {

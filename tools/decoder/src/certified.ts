@@ -39,7 +39,9 @@ function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): num
  * other way round; null when nothing is known of one. Where nothing is seen it is that of all of `bounds`. Cost: the square of the
  * number of parts, and with each as many as there are parts.
  */
-export function certifiedWithin(certified: Certified, bounds: Window, isSeen: (window: Window) => boolean = () => true): Certificate | null {
+export function certifiedWithin(
+  certified: Certified, bounds: Window, isSeen: (window: Window) => boolean = () => true,
+): Certificate | null {
   const parts = certified.filter((p, i, all) => !all.some((q, k) =>
     k !== i && holds(q.window, p.window) && q.error <= p.error && q.deviation <= p.deviation && (k < i || !holds(p.window, q.window))));
   const xs = cuts(parts, bounds, 0), ys = cuts(parts, bounds, 1);

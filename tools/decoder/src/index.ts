@@ -55,4 +55,6 @@ export { Problem, opened } from './requests.js';
 export { ServedTerrain } from './served_terrain.js';
 export { StreamTerrain } from './stream_terrain.js';
 export { type LocalFrame, localPositions, mapPositions, normalsOf, surfaceCorners } from './surface.js';
-export { type Certainty, type Frame, type Mesh, type MeshOptions, type RefineOptions, type State, type Step, Terrain } from './terrain.js';
+export {
+  type Certainty, type Frame, type Mesh, type MeshOptions, type RefineOptions, type State, type Step, Terrain,
+} from './terrain.js';

@@ -36,8 +36,8 @@ async function compiled(source: ModuleSource): Promise<WebAssembly.Module> {
     throw new Problem('The decoder is something else', `${place} is no WebAssembly. Give the place of decoder.wasm as { wasm: url }.`);
   }
   return WebAssembly.compile(bytes as BufferSource).catch((error: unknown) => {
-    throw new Problem(
-      'The decoder cannot be compiled', `${String(error)} Where a page has a Content-Security-Policy, it needs script-src 'wasm-unsafe-eval'.`);
+    const policy = "Where a page has a Content-Security-Policy, it needs script-src 'wasm-unsafe-eval'.";
+    throw new Problem('The decoder cannot be compiled', `${String(error)} ${policy}`);
   });
 }
 
@@ -48,9 +48,10 @@ function isModule(bytes: Bytes): boolean {
 
 async function bytesOf(source: Uncompiled): Promise<[bytes: Bytes, place: string]> {
   if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return [source, 'What was given'];
-  if (!(source instanceof Response) && files.read !== null && /^file:/.test(String(source))) return [await files.read(new URL(source)), String(source)];
+  const address = String(source);
+  if (files.read !== null && address.startsWith('file:')) return [await files.read(new URL(address)), address];
   const response = source instanceof Response ? source : await fetch(source).catch(() => null);
-  const place = response?.url || String(source);
+  const place = response?.url || address;
   if (response === null || !response.ok) {
     throw new Problem(
       'The decoder cannot be reached', `There is no decoder.wasm at ${place}. Give its place as { wasm: url }.`, response?.status ?? 0);

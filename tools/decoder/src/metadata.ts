@@ -50,7 +50,8 @@ export function mapCrsOf(wkt: string): string {
 /** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
   const all = (metadata ?? {}) as {
-    crs?: { wkt?: unknown } | null; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: StreamRequest;
+    crs?: { wkt?: unknown } | null; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown;
+    request?: StreamRequest;
   };
   const g = all.ground;
   const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);

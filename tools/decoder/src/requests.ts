@@ -67,8 +67,10 @@ async function checkAnswer(response: Response): Promise<void> {
   throw new Problem(title, message, status, '', retryAfter);
 }
 
-/** Tries of a host without a byte, after which it counts as gone; milliseconds before the second; the longest that a host is waited for. */
-const mostTries = 4, firstPause = 250, longestPause = 20000;
+/** Tries of a host without a byte, after which it counts as gone. */
+const mostTries = 4;
+/** Milliseconds before the second try, and the most that a host is waited for. */
+const firstPause = 250, longestPause = 20000;
 
 /** The tries of a host that fails: few, with pauses between that double. */
 export class Tries {

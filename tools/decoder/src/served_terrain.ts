@@ -86,7 +86,8 @@ export class ServedTerrain extends Terrain {
 
   /** Asks for less from now on where a piece was too large for the service. */
   private mends(error: unknown): boolean {
-    if (!(error instanceof Problem) || error.status !== 413 || error.limit !== 'most_stream_bytes' || this.pieceBytes <= leastBytes) return false;
+    const isTooLarge = error instanceof Problem && error.status === 413 && error.limit === 'most_stream_bytes';
+    if (!isTooLarge || this.pieceBytes <= leastBytes) return false;
     this.pieceBytes = Math.max(leastBytes, this.pieceBytes / 4);
     return true;
   }

@@ -3,7 +3,7 @@
 // A terrain that becomes finer while it arrives, whatever it comes from (stream_terrain.ts, served_terrain.ts).
 import { type Certified, certifiedWithin } from './certified.js';
 import { type Certificate, type Decoder, boundsOf, onMap } from './decoder.js';
-import type { Window } from './map_window.js';
+import { type Window, widened } from './map_window.js';
 import { type Told, mapCrsOf, toldBy } from './metadata.js';
 import { type LocalFrame, localPositions, mapPositions, surfaceCorners } from './surface.js';
 
@@ -159,7 +159,9 @@ export abstract class Terrain {
 
   /** What is certified in all of a window, in the CRS of the file; null where nothing is known of a part of it. */
   certifiedIn(window: Window): Certainty | null {
-    const certificate = certifiedWithin(this.certified, window);
+    // Beyond the terrain there is no mesh of which anything could be said.
+    const within = widened(window, this.bounds, 0);
+    const certificate = within[0] <= within[2] && within[1] <= within[3] ? certifiedWithin(this.certified, within) : null;
     return certificate === null ? null : { ...certificate, unit: this.units.height, window };
   }
 

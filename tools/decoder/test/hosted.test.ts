@@ -114,7 +114,8 @@ test('a file that was cut ends where it ends, whatever its host says of its leng
   });
   // A length of packed bytes that a page cannot know to be one.
   const packed = deflateSync(bytes);
-  await hosted({ given: () => packed, names: () => ({ ETag: '"a"', 'Content-Encoding': 'deflate' }), breaks: (answer) => (answer === 0 ? 30000 : Infinity) }, isWhole);
+  const names = (): Record<string, string> => ({ ETag: '"a"', 'Content-Encoding': 'deflate' });
+  await hosted({ given: () => packed, names, breaks: (answer) => (answer === 0 ? 30000 : Infinity) }, isWhole);
 });
 
 test('a host that is gone for good is given up after few tries, and what came stays', async () => {

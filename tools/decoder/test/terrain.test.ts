@@ -114,6 +114,9 @@ test('nothing is certified where nothing is known', async () => {
   assert.deepEqual([everywhere.certified, everywhere.state], [null, 'complete'], 'an error that is not certified was not reached');
   assert.ok(part.certifiedIn(window)!.error <= 5);
   assert.equal(part.certifiedIn([west, south, east, south + 1]), null);
+  const outside = part.certifiedIn([west - 99, south - 99, middle.x, middle.y]);
+  assert.equal(outside!.error, part.certifiedIn(window)!.error, 'what sticks out is no terrain');
+  assert.equal(part.certifiedIn([west - 99, south, west - 9, north]), null);
   assert.equal(certifiedAt(certifiedOf(part.decoder), [{ x: east - 1, y: north - 1 }]), null);
   assert.deepEqual(certifiedAt(certifiedOf(part.decoder), [{ x: west + 1, y: south + 1 }]), part.decoder.certificate);
 });

@@ -64,7 +64,8 @@ export class Panel {
     part('certified').textContent = isExact ? 'Exact' : certificate === null ? '\u2013' : `\u00b1${bound(certificate.error)} ${sign}`;
     const where = everywhere ? 'at every sample' : 'at every sample in sight';
     // Clicks tell the same: what a mesh is off between the samples, where there is no other bound.
-    const between = certificate !== null && certificate.deviation > certificate.error ? `, \u00b1${bound(certificate.deviation)} ${sign} between` : '';
+    const isWider = certificate !== null && certificate.deviation > certificate.error;
+    const between = isWider ? `, \u00b1${bound(certificate.deviation)} ${sign} between` : '';
     const whole = certificate === null ? 'not certified in all that is in sight' : `certified ${where}${between}`;
     const waits = status.waitsFor === undefined ? 'still refining' : `waiting: ${status.waitsFor}`;
     part('certified-what').textContent = {

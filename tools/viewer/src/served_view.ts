@@ -3,7 +3,9 @@
 // A terrain of a service, as fine as the camera needs it where it looks. Each answer is a stream that goes on from those before
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
-import { type Certified, type Collection, DecodeError, type Decoder, mostServings, Problem, Received, type Wanted, widened } from 'ptin-decoder';
+import {
+  type Certified, type Collection, DecodeError, type Decoder, mostServings, Problem, Received, type Wanted, widened,
+} from 'ptin-decoder';
 import { rounded } from './format';
 import type { Frame } from './frame';
 import type { Answer, Progress, Question } from './messages';

@@ -126,7 +126,8 @@ class Viewer {
     const { status, frame } = this;
     if (status === null || frame === null) return;
     const { certificate, certified } = status;
-    const isEverywhere = certificate !== null && certified.some((part) => holds(part.window, frame.bounds) && part.error <= certificate.error);
+    const most = certificate?.error ?? -1;
+    const isEverywhere = certified.some((part) => holds(part.window, frame.bounds) && part.error <= most);
     this.panel.showStatus(status, certificate, isEverywhere);
   }
 
