@@ -64,7 +64,8 @@ export class ServedTerrain extends Terrain {
         if (decoder.splits < decoder.splitsInAll) yield 'refining';
       }
     }
-    yield error > 0 ? 'reached' : 'complete';
+    // Below the error of the service's own file there is nothing.
+    yield this.isReached(error, part.window) ? 'reached' : 'complete';
   }
 
   protected rest(): void {}

@@ -37,19 +37,17 @@ export class StreamTerrain extends Terrain {
   protected async *receive(options: RefineOptions): AsyncGenerator<State, void, void> {
     const { error = 0, maxVertices = Infinity, maxBytes = Infinity, window = this.window, signal } = options;
     const { decoder, bytes } = this;
-    const isReached = (): boolean => error > 0 && (this.certifiedIn(window)?.error ?? Infinity) <= error;
     for (;;) {
       signal?.throwIfAborted();
-      if (isReached()) return yield 'reached';
+      if (this.isReached(error, window)) return yield 'reached';
       if (decoder.isComplete) return yield 'complete';
       if (decoder.mayExceed(maxVertices)) return yield 'vertices';
       if (this.left.length === 0 && this.bytes - bytes >= maxBytes) return yield 'bytes';
       const { splits } = decoder;
       if (!await this.applyNext(signal)) return yield 'cut';
       // The end of the stream follows its last split at once, and a step that is the last says why.
-      if (decoder.splits !== splits && decoder.splits < decoder.splitsInAll && !isReached() && !decoder.mayExceed(maxVertices)) {
-        yield 'refining';
-      }
+      const isLast = decoder.splits === decoder.splitsInAll || decoder.mayExceed(maxVertices) || this.isReached(error, window);
+      if (decoder.splits !== splits && !isLast) yield 'refining';
     }
   }
 

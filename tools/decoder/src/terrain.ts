@@ -62,7 +62,7 @@ export interface RefineOptions extends MeshOptions {
    * that was written before refines everywhere, and `certified` tells of this part.
    */
   window?: Window;
-  /** The mesh has so many times the vertices of the step before: 1.5. At 1 each frame is a step. */
+  /** The mesh has so many times the vertices of the step before: 1.5. At 1 each frame is a step, at Infinity the last alone. */
   growth?: number;
   /** Ends the call with the signal's reason; what came stays, and another call goes on. */
   signal?: AbortSignal;
@@ -132,12 +132,13 @@ export abstract class Terrain {
   async *refine(options: RefineOptions = {}): AsyncGenerator<Step | Step<Float64Array>, void, void> {
     if (this.isRefining) throw new Error('this terrain is being refined already: end that loop first');
     this.isRefining = true;
+    const { growth = 1.5 } = options;
     try {
-      let next = 0;
+      let next = growth === Infinity ? Infinity : 0;
       for await (const state of this.receive(options)) {
         const { vertexCount } = this.decoder.mesh;
         if (state === 'refining' && vertexCount < next) continue;
-        next = vertexCount * (options.growth ?? 1.5);
+        next = vertexCount * growth;
         yield { ...this.mesh(options), state };
         options.signal?.throwIfAborted();
       }
@@ -163,6 +164,11 @@ export abstract class Terrain {
     const within = widened(window, this.bounds, 0);
     const certificate = within[0] <= within[2] && within[1] <= within[3] ? certifiedWithin(this.certified, within) : null;
     return certificate === null ? null : { ...certificate, unit: this.units.height, window };
+  }
+
+  /** True when an error that was asked for is certified; none is for an error of 0, which asks for full detail. */
+  protected isReached(error: number, window: Window): boolean {
+    return error > 0 && (this.certifiedIn(window)?.error ?? Infinity) <= error;
   }
 
   /** What the metadata of its stream tell. */

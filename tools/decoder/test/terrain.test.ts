@@ -258,6 +258,16 @@ test('an answer of a service that breaks off anywhere is gone on from', async ()
   });
 });
 
+test('an error that a service has no detail for was not reached', async () => {
+  const { stream: all } = terrain('mountains_257', '--error', '20');
+  ptin('stream', store, '--error', '20', '--have-error', '20', '-o', file('no_more.ptins'));
+  await played([readFileSync(all), readFileSync(file('no_more.ptins'))], async (url) => {
+    const step = await (await openServed(url, { wasm })).refined({ error: 5 });
+    assert.ok(step.certified!.error > 5);
+    assert.equal(step.state, 'complete');
+  });
+});
+
 test('of a service damage is one clear error, too, and what came before stays', async () => {
   const damaged = new Uint8Array(bytes);
   damaged[20000] ^= 1;

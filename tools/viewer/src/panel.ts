@@ -71,7 +71,7 @@ export class Panel {
     part('certified-what').textContent = {
       loading: isExact ? waits : `${whole}, and ${waits}`,
       complete: isExact ? 'every sample is met' : whole,
-      held: status.heldBy === 'error' ? `${whole}, as asked for`
+      held: status.heldBy === 'error' ? whole + (certificate === null ? '' : ', as asked for')
         : `${whole}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,
       cut: `${whole}; the rest of the stream did not arrive`,
       damaged: `${whole}; the rest of the stream is damaged`,
