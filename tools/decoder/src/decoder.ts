@@ -12,7 +12,7 @@ const factNames = [
 ] as const;
 /**
  * Facts of the terrain. Positions in the mesh are on a grid: map = origin + step * grid. Least and greatest are of all samples of
- * the whole terrain; the least height is above the greatest when all is void.
+ * the whole terrain; the least height is above the greatest when all is void. Before the first mesh none of them means anything.
  */
 export type Facts = Readonly<Record<typeof factNames[number], number>>;
 
