@@ -4,9 +4,8 @@
 import { AmbientLight, Deck, DirectionalLight, LightingEffect, MapView } from '@deck.gl/core';
 import { SimpleMeshLayer } from '@deck.gl/mesh-layers';
 import { getDistanceScales, lngLatToWorld } from '@math.gl/web-mercator';
-import { surfaceOf } from 'ptin-decoder';
-import { metresPerHeight, toGeographic } from './geographic.js';
-import { middleOf, refineTerrain } from './terrain.js';
+import { toGeographic } from './geographic.js';
+import { refineTerrain } from './terrain.js';
 
 const sun = new DirectionalLight({ color: [255, 255, 255], intensity: 1.1, direction: [1, -1, -0.8] });
 const deck = new Deck({
@@ -16,19 +15,18 @@ const deck = new Deck({
 });
 
 let view = null;
-refineTerrain(2, (decoder) => {
-  const toLngLat = toGeographic(decoder), scale = metresPerHeight(decoder);
-  const [middleX, middleY, base] = middleOf(decoder);
+refineTerrain(({ positions: onMap, indices }, terrain) => {
+  const toLngLat = toGeographic(terrain);
+  const { origin: [middleX, middleY, base], scale: [, , scale] } = terrain.frame;
   const [longitude, latitude] = toLngLat([middleX, middleY]);
   const [x0, y0] = lngLatToWorld([longitude, latitude]);
   const { unitsPerMeter: [unit] } = getDistanceScales({ longitude, latitude });
-  const { positions: onMap, indices } = surfaceOf(decoder);
   const positions = new Float32Array(onMap.length);
   for (let i = 0; i < onMap.length; i += 3) {
     const [x, y] = lngLatToWorld(toLngLat([onMap[i], onMap[i + 1]]));
     positions[i] = (x - x0) / unit;
     positions[i + 1] = (y - y0) / unit;
-    positions[i + 2] = (onMap[i + 2] - base) * scale || 0;
+    positions[i + 2] = (onMap[i + 2] - base) * scale;
   }
   view ??= { longitude, latitude, zoom: 11, pitch: 55, bearing: -20, maxPitch: 80 };
   deck.setProps({
@@ -39,4 +37,4 @@ refineTerrain(2, (decoder) => {
       material: { ambient: 0.4, diffuse: 0.7, shininess: 1, specularColor: [0, 0, 0] },
     })],
   });
-});
+}, { positions: 'map' });

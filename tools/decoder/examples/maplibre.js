@@ -4,9 +4,8 @@
 // the terrain.
 import 'maplibre-gl/dist/maplibre-gl.css';
 import { Map, MercatorCoordinate, setWorkerUrl } from 'maplibre-gl';
-import { surfaceOf } from 'ptin-decoder';
-import { metresPerHeight, toGeographic } from './geographic.js';
-import { middleOf, refineTerrain } from './terrain.js';
+import { toGeographic } from './geographic.js';
+import { refineTerrain } from './terrain.js';
 
 // MapLibre's styles and its Worker lie beside the bundle.
 document.head.append(Object.assign(document.createElement('link'), { rel: 'stylesheet', href: 'maplibre.css' }));
@@ -87,24 +86,23 @@ const layer = {
 map.on('load', () => {
   map.addLayer(layer);
   let isFirst = true;
-  refineTerrain(2, (decoder) => {
-    const toLngLat = toGeographic(decoder), scale = metresPerHeight(decoder);
-    const [middleX, middleY, base] = middleOf(decoder);
+  refineTerrain(({ positions: onMap, indices }, terrain) => {
+    const toLngLat = toGeographic(terrain);
+    const { origin: [middleX, middleY, base], scale: [, , scale] } = terrain.frame;
     const lngLat = toLngLat([middleX, middleY]);
     const middle = MercatorCoordinate.fromLngLat(lngLat, 0);
     const metre = middle.meterInMercatorCoordinateUnits();
-    const { positions: onMap, indices } = surfaceOf(decoder);
     const positions = new Float32Array(onMap.length);
     for (let i = 0; i < onMap.length; i += 3) {
       const { x, y } = MercatorCoordinate.fromLngLat(toLngLat([onMap[i], onMap[i + 1]]));
       positions[i] = x - middle.x;
       positions[i + 1] = y - middle.y;
       // The map is flat at the terrain's least height.
-      positions[i + 2] = (onMap[i + 2] - base) * scale * metre || 0;
+      positions[i + 2] = (onMap[i + 2] - base) * scale * metre;
     }
     layer.setMesh(positions, indices, [middle.x, middle.y], metre);
     if (isFirst) map.jumpTo({ center: lngLat });
     isFirst = false;
     map.triggerRepaint();
-  });
+  }, { positions: 'map' });
 });

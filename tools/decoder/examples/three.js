@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A terrain in three.js: z is up, metres around its middle. For a terrain in metres (a projected CRS).
+// A terrain in three.js: z is up, metres around its middle.
 import {
   BufferAttribute, BufferGeometry, DirectionalLight, HemisphereLight, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, WebGLRenderer,
 } from 'three';
 import { MapControls } from 'three/addons/controls/MapControls.js';
-import { surfaceAround } from 'ptin-decoder';
-import { middleOf, refineTerrain } from './terrain.js';
+import { refineTerrain } from './terrain.js';
 
 const view = document.getElementById('view');
 const renderer = new WebGLRenderer({ antialias: true });
@@ -38,10 +37,7 @@ addEventListener('resize', resize);
 resize();
 
 let isFirst = true;
-refineTerrain(2, (decoder) => {
-  const { positions, indices } = surfaceAround(decoder, middleOf(decoder));
-  // A vertex in a void has no height and no triangle; the box around the geometry wants numbers.
-  for (let i = 2; i < positions.length; i += 3) if (Number.isNaN(positions[i])) positions[i] = 0;
+refineTerrain(({ positions, indices }) => {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(positions, 3));
   geometry.setIndex(new BufferAttribute(indices, 1));

@@ -10,21 +10,17 @@ export interface CertifiedPart extends Certificate {
   window: Window;
 }
 
-/** Certificates of a mesh: a place has the least of the parts that hold it, or else `otherwise`. */
-export interface Certified {
-  parts: CertifiedPart[];
-  /** The certificate of the whole terrain. */
-  otherwise: Certificate;
-}
+/** Certificates of a mesh: a place has the least of the parts that hold it. Where there is none nothing is known of the mesh. */
+export type Certified = readonly CertifiedPart[];
 
 /**
  * The certificates of a single stream: what it certifies holds where it was asked for. One for isolines is certified along these
- * alone: elsewhere no more is known than the least and the greatest height of the terrain.
+ * alone, so of no window.
  */
 export function certifiedOf(decoder: Decoder, request: StreamRequest = toldBy(decoder.metadata).request): Certified {
-  const { window, levels } = request;
-  const parts = levels === undefined ? [{ window: window ?? boundsOf(decoder.facts), ...decoder.certificate }] : [];
-  return { parts, otherwise: decoder.certificateByRelief };
+  const { certificate } = decoder;
+  if (certificate === null || request.levels !== undefined) return [];
+  return [{ window: request.window ?? boundsOf(decoder.facts), ...certificate }];
 }
 
 function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): number[] {
@@ -40,41 +36,42 @@ function cuts(parts: readonly CertifiedPart[], bounds: Window, axis: 0 | 1): num
 
 /**
  * The certificate that holds in every part of `bounds` that `isSeen`, which may take what is not seen for seen but never the
- * other way round. Where nothing is seen it is that of all of `bounds`. Cost: the square of the number of parts, and with each as
- * many as there are parts.
+ * other way round; null when nothing is known of one. Where nothing is seen it is that of all of `bounds`. Cost: the square of the
+ * number of parts, and with each as many as there are parts.
  */
-export function certifiedWithin(certified: Certified, bounds: Window, isSeen: (window: Window) => boolean): Certificate {
-  const parts = certified.parts.filter((p, i, all) => !all.some((q, k) =>
+export function certifiedWithin(
+  certified: Certified, bounds: Window, isSeen: (window: Window) => boolean = () => true,
+): Certificate | null {
+  const parts = certified.filter((p, i, all) => !all.some((q, k) =>
     k !== i && holds(q.window, p.window) && q.error <= p.error && q.deviation <= p.deviation && (k < i || !holds(p.window, q.window))));
   const xs = cuts(parts, bounds, 0), ys = cuts(parts, bounds, 1);
-  const seen: Certificate = { error: -1, deviation: -1 }, all: Certificate = { error: -1, deviation: -1 };
+  const seen = { error: -1, deviation: -1 }, all = { error: -1, deviation: -1 };
   for (let i = 1; i < xs.length; ++i) {
     for (let k = 1; k < ys.length; ++k) {
       const cell: Window = [xs[i - 1], ys[k - 1], xs[i], ys[k]];
       // The edges of a cell may be those of the next window, by their rounding: its middle is in one alone.
-      const here = certifiedAt({ parts, otherwise: certified.otherwise }, [{ x: (cell[0] + cell[2]) / 2, y: (cell[1] + cell[3]) / 2 }]);
+      const here = certifiedAt(parts, [{ x: (cell[0] + cell[2]) / 2, y: (cell[1] + cell[3]) / 2 }]) ?? unknown;
       worsen(all, here);
       const isWorse = here.error > seen.error || here.deviation > seen.deviation;
       if (isWorse && isSeen(cell)) worsen(seen, here);
     }
   }
-  if (seen.error >= 0) return seen;
-  return all.error >= 0 ? all : certified.otherwise;
+  const worst = seen.error >= 0 ? seen : all;
+  return worst.error < 0 || worst.error === unknown.error ? null : worst;
 }
+
+/** Worse than every certificate. */
+const unknown: Certificate = { error: Infinity, deviation: Infinity };
 
 function worsen(most: Certificate, by: Certificate): void {
   most.error = Math.max(most.error, by.error);
   most.deviation = Math.max(most.deviation, by.deviation);
 }
 
-/** The certificate at both ends of a line, and so all along it: windows are convex. */
-export function certifiedAt(certified: Certified, places: readonly MapPosition[]): Certificate {
-  const least: Certificate = { ...certified.otherwise };
+/** The certificate at both ends of a line, and so all along it: windows are convex. Null where nothing is known of the mesh. */
+export function certifiedAt(certified: Certified, places: readonly MapPosition[]): Certificate | null {
   const around = windowAround(places);
-  for (const part of certified.parts) {
-    if (!holds(part.window, around)) continue;
-    least.error = Math.min(least.error, part.error);
-    least.deviation = Math.min(least.deviation, part.deviation);
-  }
-  return least;
+  const parts = certified.filter((part) => holds(part.window, around));
+  if (parts.length === 0) return null;
+  return { error: Math.min(...parts.map((p) => p.error)), deviation: Math.min(...parts.map((p) => p.deviation)) };
 }

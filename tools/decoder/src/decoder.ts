@@ -12,10 +12,11 @@ const factNames = [
 ] as const;
 /**
  * Facts of the terrain. Positions in the mesh are on a grid: map = origin + step * grid. Least and greatest are of all samples of
- * the whole terrain; the least height is above the greatest when all is void.
+ * the whole terrain; the least height is above the greatest when all is void. Before the first mesh none of them means anything.
  */
 export type Facts = Readonly<Record<typeof factNames[number], number>>;
 
+/** How far the mesh may be from the full terrain, in the unit of heights. Null stands for it where nothing is known. */
 export interface Certificate {
   /** At every sample. */
   error: number;
@@ -53,8 +54,6 @@ interface Exports extends MeshExports {
   splitsInAll(): number;
   certifiedError(): number;
   certifiedDeviation(): number;
-  reliefError(): number;
-  reliefDeviation(): number;
   facts(): number;
   metadata(): number;
   metadataBytes(): number;
@@ -66,6 +65,7 @@ interface Exports extends MeshExports {
 
 let versions = 0;
 
+/** One stream, and those that go on from it. It holds memory of its own, some 60 bytes a vertex, until nobody refers to it. */
 export class Decoder {
   private readonly wasm: Exports;
   private failure: DecodeError | null = null;
@@ -94,8 +94,9 @@ export class Decoder {
     }
   }
 
-  /** Gives up the rest of a stream that was cut: the bytes fed next are those of another one. */
+  /** Gives up the rest of a stream that was cut: the bytes fed next are those of another one. After damage there is no next one. */
   beginNext(): void {
+    if (this.failure !== null) return;
     this.version = ++versions;
     this.wasm.beginNext();
   }
@@ -106,12 +107,15 @@ export class Decoder {
   get numbering(): number { return this.wasm.numbering(); }
   get splits(): number { return this.wasm.splits(); }
   get splitsInAll(): number { return this.wasm.splitsInAll(); }
-  get certificate(): Certificate {
-    return { error: this.wasm.certifiedError(), deviation: this.wasm.certifiedDeviation() };
+  /** What the stream certifies where it was asked for, which certifiedOf() tells; null before the first mesh. */
+  get certificate(): Certificate | null {
+    return !this.hasMesh ? null : { error: this.wasm.certifiedError(), deviation: this.wasm.certifiedDeviation() };
   }
-  /** What holds of any mesh of this terrain: both lie between its least and its greatest height. */
-  get certificateByRelief(): Certificate {
-    return { error: this.wasm.reliefError(), deviation: this.wasm.reliefDeviation() };
+
+  /** True when the next frame may bring more vertices: a sender puts an eighth of the mesh into one, and at least 256. */
+  mayExceed(mostVertices: number): boolean {
+    const now = this.wasm.vertexCount();
+    return now + Math.max(256, now / 8) > mostVertices;
   }
 
   get facts(): Facts {

@@ -12,6 +12,7 @@ export interface StreamRequest {
   splits?: number;
 }
 
+/** Names of units, as `metre` or `US survey foot`; `unknown` where nobody told. */
 export interface Units {
   horizontal: string;
   height: string;
@@ -19,8 +20,8 @@ export interface Units {
 
 /** What the metadata of a stream tell. */
 export interface Told {
-  /** The CRS of the map positions as WKT, and of the heights where that is known; '': not told. */
-  crs: string;
+  /** The CRS of the map positions as WKT, and of the heights where that is known; null: not told. */
+  crs: string | null;
   units: Units;
   /** Null: written by a program that did not tell it. */
   ground: GroundFacts | null;
@@ -28,17 +29,36 @@ export interface Told {
   request: StreamRequest;
 }
 
+/**
+ * The part of a CRS that is about the map: of a compound one the first part, else all of it.
+ * @param wkt  Well-known text, as Told.crs
+ */
+export function mapCrsOf(wkt: string): string {
+  if (!/^(COMPOUNDCRS|COMPD_CS)\[/.test(wkt)) return wkt;
+  // A text in quotes (a quote in it is written twice), a bracket, or a comma between two parts.
+  let depth = 0, begin = -1;
+  for (const { 0: part, index } of wkt.matchAll(/"[^"]*"|[[\],]/g)) {
+    if (part === '[') ++depth;
+    else if (part === ']') --depth;
+    if (part !== ',' || depth !== 1) continue;
+    if (begin >= 0) return wkt.slice(begin, index).trim();
+    begin = index + 1;
+  }
+  return wkt;
+}
+
 /** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
   const all = (metadata ?? {}) as {
-    crs?: { wkt?: unknown }; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown; request?: StreamRequest;
+    crs?: { wkt?: unknown } | null; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown;
+    request?: StreamRequest;
   };
   const g = all.ground;
   const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
   const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
     isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
   return {
-    crs: typeof all.crs?.wkt === 'string' ? all.crs.wkt : '',
+    crs: typeof all.crs?.wkt === 'string' ? all.crs.wkt : null,
     units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
     ground: !known ? null : {
       geographic: g.geographic === true, semi_major: g.semi_major as number, inverse_flattening: Number(g.inverse_flattening) || 0,

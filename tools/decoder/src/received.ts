@@ -2,31 +2,33 @@
 //
 // The mesh that a receiver of `ptin serve` holds: each answer of /stream goes on from those before it, so only what is missing travels.
 import type { Certified, CertifiedPart } from './certified.js';
+import type { StreamBody } from './collection.js';
 import { Decoder } from './decoder.js';
 import { type Window, holds } from './map_window.js';
+import { until } from './requests.js';
 
-/** A part of the terrain, and the error at which it is wanted there, in the height's unit. */
+/** A part of the terrain, and the error at which it is wanted there, in the height's unit; 0: at full detail. */
 export interface Wanted {
   window: Window;
   error: number;
 }
 
 /** What a receiver was served, as `ptin unstream` tells it and `ptin stream --have` takes it. */
-export interface Serving extends Wanted {
+export interface Serving {
+  window: Window;
+  error?: number;
   splits: number;
 }
 
-/** What POST .../stream takes. */
-export interface StreamBody extends Wanted {
-  max_bytes: number;
-  have?: readonly Serving[];
-  fingerprint?: string;
-}
+/** A service takes no more than 64 servings. */
+export const mostServings = 60;
 
 /** A decoder with what it was served. */
 export class Received {
   readonly decoder: Decoder;
   readonly have: Serving[] = [];
+  /** Of all that came. */
+  bytes = 0;
   private readonly whole: Wanted[] = [];
   /** The certificate of each serving, in its window. */
   private readonly parts: CertifiedPart[] = [];
@@ -41,8 +43,8 @@ export class Received {
 
   /** What is certified where, also while a stream comes. */
   get certified(): Certified {
-    const now = this.coming === null ? [] : [{ window: this.coming, ...this.decoder.certificate }];
-    return { parts: [...this.parts, ...now], otherwise: this.decoder.certificateByRelief };
+    const { certificate } = this.decoder;
+    return this.coming === null || certificate === null ? [...this.parts] : [...this.parts, { window: this.coming, ...certificate }];
   }
 
   /** True when all of `wanted` was served at its error, or at a smaller one. */
@@ -57,45 +59,54 @@ export class Received {
 
   /** The body of a request for what lacks of `wanted`, in at most so many bytes. */
   asking({ window, error }: Wanted, mostBytes: number): StreamBody {
-    const body: StreamBody = { window, error, max_bytes: mostBytes };
+    const body: StreamBody = { ...asked({ window, error }), max_bytes: mostBytes };
     if (this.have.length !== 0) body.have = this.have;
     if (this.have.length !== 0 && this.fingerprint !== '') body.fingerprint = this.fingerprint;
     return body;
   }
 
   /**
-   * Takes the answer to asking(`wanted`). `grown` is told of all bytes that came; the mesh may have changed then.
-   * Throws DecodeError, and what reading the body throws: a connection that broke leaves what came, and a further answer may follow;
-   * after damage nothing can.
+   * Takes the answer to asking(`wanted`), and yields whenever a frame was applied. Leaving the loop lets go of the answer.
+   * Throws DecodeError, the reason of a signal, and what reading the body throws: what came counts, also when the connection broke,
+   * and a further answer may follow; after damage none can.
    */
-  async take(wanted: Wanted, response: Response, grown: (bytes: number) => void = () => undefined): Promise<void> {
+  async *take(wanted: Wanted, response: Response, signal?: AbortSignal): AsyncGenerator<void, void, void> {
     if (response.body === null) throw new TypeError('the answer to a stream has no body');
     this.fingerprint = response.headers.get('Ptin-Fingerprint') ?? this.fingerprint;
-    const { decoder } = this;
-    const before = decoder.numbering;
+    const before = this.decoder.numbering;
     const reader = response.body.getReader();
     try {
       for (;;) {
-        const { done, value } = await reader.read();
+        const { done, value } = await until(reader.read(), signal);
         if (done) break;
-        decoder.feed(value);
-        if (decoder.numbering !== before) this.coming = wanted.window;
-        grown(value.length);
+        this.bytes += value.length;
+        for (let left: Uint8Array = value; left.length > 0;) {
+          left = left.subarray(this.decoder.feed(left, true));
+          if (this.decoder.numbering !== before) this.coming = wanted.window;
+          yield;
+        }
       }
-      const isWhole = decoder.isComplete && (decoder.certificate.error <= wanted.error || decoder.splits === 0);
-      if (isWhole) this.whole.push({ window: wanted.window, error: wanted.error });
     } finally {
       this.end(wanted);
+      await reader.cancel().catch(() => undefined);  // It is broken, or read to its end.
     }
   }
 
   /** Notes what came of the stream that was asked for, all or a part: it counts for ever. */
   private end({ window, error }: Wanted): void {
-    if (this.coming === null) return;
-    const { decoder } = this;
-    this.parts.push({ window: this.coming, ...decoder.certificate });
-    this.have.push({ window, error, splits: decoder.splits });
+    const { coming, decoder, decoder: { certificate, splits, isComplete } } = this;
     this.coming = null;
-    if (!decoder.isComplete) decoder.beginNext();
+    // Even of one whose beginning broke off some bytes were taken.
+    if (!isComplete) decoder.beginNext();
+    if (coming === null || certificate === null) return;
+    // A piece that the service cut is complete, too: of full detail the last one is empty.
+    if (isComplete && (splits === 0 || (error > 0 && certificate.error <= error))) this.whole.push({ window, error });
+    this.parts.push({ window: coming, ...certificate });
+    this.have.push({ ...asked({ window, error }), splits });
   }
+}
+
+/** As services take it: without an error for full detail, which is more than an error of 0. */
+function asked({ window, error }: Wanted): { window: Window; error?: number } {
+  return error === 0 ? { window } : { window, error };
 }

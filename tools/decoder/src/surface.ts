@@ -1,45 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The surface of a mesh as drawing libraries take it: positions, and the corners of its triangles. Voids are left open.
-import { type Decoder, heightOf, onMap } from './decoder.js';
+// A mesh as graphics want it: positions, normals, corners of the surface's triangles. Void triangles are left out, so voids stay
+// open.
+import { type Facts, heightOf } from './decoder.js';
 import { type MeshView, triangleWords, vertexWords } from './mesh.js';
 
-/** Copies: they stay as they are when the decoder is fed again. */
-export interface Surface<Positions extends Float32Array | Float64Array = Float64Array> {
-  /** Three a vertex: x, y in units of the map, the height in its own. A vertex in a void has the height NaN, and no triangle. */
-  positions: Positions;
-  /** Three a triangle, counter-clockwise seen from above. */
-  indices: Uint32Array;
+/** A frame around a place of the terrain, in which 32 bits are enough: local = (map - origin) * scale. */
+export interface LocalFrame {
+  /** x and y on the map, and the height, of local (0, 0, 0). */
+  origin: readonly [x: number, y: number, height: number];
+  /** Local units for one unit of the map along x, one along y, and one of height. */
+  scale: readonly [x: number, y: number, height: number];
 }
 
-/** The surface on the map, exact. Cost: linear. */
-export function surfaceOf(decoder: Decoder): Surface {
-  const positions = new Float64Array(3 * decoder.mesh.vertexCount);
-  placeVertices(decoder, [0, 0, 0], positions);
-  return { positions, indices: surfaceCorners(decoder.mesh) };
-}
-
-/**
- * The surface around an origin on the map, rounded to 32 bits as graphics cards take them: near the origin that is less than a
- * millimetre, which map positions themselves are not. Cost: linear.
- */
-export function surfaceAround(decoder: Decoder, origin: readonly [x: number, y: number, height: number]): Surface<Float32Array> {
-  const positions = new Float32Array(3 * decoder.mesh.vertexCount);
-  placeVertices(decoder, origin, positions);
-  return { positions, indices: surfaceCorners(decoder.mesh) };
-}
-
-function placeVertices(decoder: Decoder, [x0, y0, height0]: readonly [number, number, number], to: Float32Array | Float64Array): void {
-  const { mesh, facts } = decoder;
-  for (let v = 0, from = 0, i = 0; v < mesh.vertexCount; ++v, from += vertexWords) {
-    const { x, y } = onMap(facts, mesh.vertices[from], mesh.vertices[from + 1]);
-    to[i++] = x - x0;
-    to[i++] = y - y0;
-    to[i++] = mesh.hasHeight[v] !== 0 ? heightOf(facts, mesh.vertices[from + 2]) - height0 : NaN;
+/** Writes three numbers a vertex. A vertex without a height, which no triangle of the surface has, gets the terrain's least one. */
+function place<Numbers extends Float32Array | Float64Array>(
+  to: Numbers, mesh: MeshView, facts: Facts, { origin, scale }: LocalFrame,
+): Numbers {
+  const { vertices, vertexCount, hasHeight } = mesh;
+  const least = facts.minHeight <= facts.maxHeight ? facts.minHeight : 0;
+  const east = facts.originX - origin[0], north = facts.originY - origin[1];
+  for (let v = 0, from = 0, at = 0; v < vertexCount; ++v, from += vertexWords, at += 3) {
+    to[at] = (east + facts.stepX * vertices[from]) * scale[0];
+    to[at + 1] = (north + facts.stepY * vertices[from + 1]) * scale[1];
+    to[at + 2] = ((hasHeight[v] !== 0 ? heightOf(facts, vertices[from + 2]) : least) - origin[2]) * scale[2];
   }
+  return to;
 }
 
-/** The corners of the triangles that are no void, three each. */
+/** Positions in a local frame, three numbers a vertex. Cost: linear. */
+export function localPositions(mesh: MeshView, facts: Facts, frame: LocalFrame): Float32Array {
+  return place(new Float32Array(3 * mesh.vertexCount), mesh, facts, frame);
+}
+
+/** Positions in the CRS of the terrain's file, three numbers a vertex. Cost: linear. */
+export function mapPositions(mesh: MeshView, facts: Facts): Float64Array {
+  return place(new Float64Array(3 * mesh.vertexCount), mesh, facts, { origin: [0, 0, 0], scale: [1, 1, 1] });
+}
+
+/** Corners of the surface's triangles, three a triangle, counter-clockwise seen from above. Cost: linear. */
 export function surfaceCorners(mesh: MeshView): Uint32Array {
   const { triangles, classes, triangleCount } = mesh;
   let surface = 0;
@@ -52,4 +51,30 @@ export function surfaceCorners(mesh: MeshView): Uint32Array {
     corners[to++] = triangles[from + 2];
   }
   return corners;
+}
+
+/**
+ * Unit normals, three numbers a vertex: of the mean plane around it, weighted by area; 0, 0, 0 where no triangle is. Positions
+ * have one unit in all directions, as those of a local frame. Cost: linear.
+ */
+export function normalsOf(positions: Float32Array, corners: Uint32Array): Float32Array {
+  const normals = new Float32Array(positions.length);
+  for (let i = 0; i < corners.length; i += 3) {
+    const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
+    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1];
+    const uz = positions[b + 2] - positions[a + 2];
+    const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1];
+    const vz = positions[c + 2] - positions[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    for (const at of [a, b, c]) {
+      normals[at] += x;
+      normals[at + 1] += y;
+      normals[at + 2] += z;
+    }
+  }
+  for (let at = 0; at < normals.length; at += 3) {
+    const length = Math.hypot(normals[at], normals[at + 1], normals[at + 2]) || 1;
+    for (let i = at; i < at + 3; ++i) normals[i] /= length;
+  }
+  return normals;
 }

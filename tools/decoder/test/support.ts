@@ -82,6 +82,23 @@ export function trianglesOf(mesh: MeshView, facts: Facts): string[] {
   return all.sort();
 }
 
+export interface MapMesh {
+  positions: Float64Array;
+  indices: Uint32Array;
+}
+
+/** True when all numbers of two meshes are the same. */
+export function isSameMesh(a: MapMesh, b: MapMesh): boolean {
+  const bytesOf = ({ buffer }: MapMesh['positions' | 'indices']): Uint8Array => new Uint8Array(buffer);
+  return Buffer.compare(bytesOf(a.positions), bytesOf(b.positions)) === 0 && Buffer.compare(bytesOf(a.indices), bytesOf(b.indices)) === 0;
+}
+
+/** The same of positions on the map and their indices. */
+export function trianglesOfArrays({ positions, indices }: MapMesh): string[] {
+  const corner = (v: number): Corner => [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
+  return Array.from({ length: indices.length / 3 }, (_, t) => told([0, 1, 2].map((i) => corner(indices[3 * t + i])))).sort();
+}
+
 /** The same of a binary PLY that the program wrote: doubles, then a count and three indices a triangle. */
 export function trianglesOfPly(path: string): string[] {
   const bytes = readFileSync(path);

@@ -60,13 +60,6 @@ PTIN_EXPORT(certifiedError) double certified_error() { return reader().certifica
 PTIN_EXPORT(certifiedDeviation) double certified_deviation() {
   return reader().certificate().deviation;
 }
-/// Facts that hold of any mesh of the terrain.
-PTIN_EXPORT(reliefError) double relief_error() {
-  return ptin::certificate_by_relief(reader().facts()).error;
-}
-PTIN_EXPORT(reliefDeviation) double relief_deviation() {
-  return ptin::certificate_by_relief(reader().facts()).deviation;
-}
 
 /// Facts in the order in which src/decoder.ts reads them. Valid until the next call.
 PTIN_EXPORT(facts) const double* facts() {

@@ -2,12 +2,14 @@
 //
 // A terrain whose stream comes from a file: all of it, as far as the error and the number of vertices go. Questions are answered
 // from the mesh that is there, within its certificate: all numbers are the engine's.
-import { type Certified, certifiedAt, certifiedOf, type Decoder, type MapPosition, type Told, toldBy, type Wanted } from 'ptin-decoder';
-import { Problem, moduleAt } from './fetching';
+import {
+  type Certified, certifiedAt, certifiedOf, type Decoder, type HostedBytes, type MapPosition, Problem, type Told, toldBy, type Wanted,
+} from 'ptin-decoder';
+import { moduleAt } from './fetching';
 import type { Frame } from './frame';
 import type { Answer, Certainty, Progress, Question } from './messages';
 import { type Asked, Questions } from './questions';
-import { type OpenedStream, StaticStream } from './static_stream';
+import { StaticStream } from './static_stream';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 export class FileView implements TerrainView {
@@ -24,7 +26,7 @@ export class FileView implements TerrainView {
 
   /** @param folder  The address below which the viewer's files lie. */
   constructor(
-    readonly name: string, private readonly opening: Promise<OpenedStream>, module: WebAssembly.Module,
+    readonly name: string, private readonly opening: Promise<HostedBytes>, module: WebAssembly.Module,
     private readonly folder: string, mostVertices: number, private readonly events: ViewEvents,
   ) {
     this.still = new StaticStream(module, { error: 0, mostVertices });
@@ -44,9 +46,9 @@ export class FileView implements TerrainView {
   }
 
   async run(): Promise<void> {
-    const { reader, bytesInAll } = await this.opening;
-    this.bytesInAll = bytesInAll;
-    void this.receive(reader);
+    const host = await this.opening;
+    this.bytesInAll = host.bytesInAll;
+    void this.receive(host);
     await this.follow();
   }
 
@@ -83,21 +85,24 @@ export class FileView implements TerrainView {
   }
 
   /** Reads what the host sends, unless what is there is enough: then it waits, and so does the host. */
-  private async receive(reader: ReadableStreamDefaultReader<Uint8Array>): Promise<void> {
+  private async receive(host: HostedBytes): Promise<void> {
     try {
       for (;;) {
         while (this.still.heldBy !== null && !this.hasFailed) {
           await new Promise<void>((resolve) => { setTimeout(resolve, 100); });
         }
-        const { done, value } = await reader.read();
-        if (done || this.hasFailed) break;
+        const value = await host.next();
+        if (value === null || this.hasFailed) break;
         this.still.kept.add(value);
         this.wake?.();
       }
-    } catch { /* A connection that broke leaves what came. */ }
+    } catch (error) {
+      // What came stays.
+      this.events.failed(error);
+    }
     this.arrived = true;
     this.wake?.();
-    if (this.hasFailed) await reader.cancel().catch(() => undefined);
+    host.rest();
   }
 
   /** Applies what arrives. */
@@ -140,10 +145,10 @@ export class FileView implements TerrainView {
     const { ground, freeOfVoids, request: { error, window, levels, splits } } = this.told;
     const isAll = error === undefined && window === undefined && levels === undefined && splits === undefined;
     const certificate = certifiedAt(this.certified, places);
-    const isCertified = certificate.deviation < decoder.certificateByRelief.deviation;
+    const { error: most, deviation } = certificate ?? { error: null, deviation: null };
     return {
-      decoder, ground, freeOfVoids, isWhole: isAll && decoder.isComplete, certificate: isCertified ? certificate : null,
-      certainty: { ...certificate, of: 'mesh', isExact: isCertified && certificate.deviation === 0 },
+      decoder, ground, freeOfVoids, isWhole: isAll && decoder.isComplete, certificate,
+      certainty: { error: most, deviation, of: 'mesh', isExact: deviation === 0 },
     };
   }
 }

@@ -61,7 +61,7 @@ function placesFor(uncertainty: number): number {
   return uncertainty > 0 ? Math.max(0, Math.min(3, 1 - Math.floor(Math.log10(uncertainty)))) : 2;
 }
 
-/** A height with a decimal place that its uncertainty deserves. */
+/** A height with a decimal place that its uncertainty deserves; Infinity: not known. */
 export function height(value: number, uncertainty: number, sign: string): string {
   return `${value.toFixed(placesFor(uncertainty)).replace('-', '\u2212')} ${sign}`;
 }

@@ -206,7 +206,7 @@ export class Inquiry {
       hide(true, 'csv', 'plot');
       return;
     }
-    const d = slackOf(certainty);
+    const d = slackOf(certainty) ?? Infinity;
     const [low, high] = extentOf(known);
     const climb = climbOf(stations);
     this.write('Profile', lengthText(length, lengths),
@@ -313,7 +313,7 @@ export class Inquiry {
     const { profile, certainty } = answer;
     const ray = answer.kind === 'sight' ? { ...drawnSight(answer, frame), colour: verdictColour(answer.sight.verdict) } : undefined;
     drawPlot(part('plot') as unknown as SVGSVGElement, {
-      profile, heightSign: signOf(frame.units.height), deviation: slackOf(certainty), ray,
+      profile, heightSign: signOf(frame.units.height), deviation: slackOf(certainty) ?? Infinity, ray,
     });
   }
 
@@ -333,13 +333,14 @@ function exactly(certainty: Certainty): string {
   return certainty.of === 'terrain' ? 'exact, of the full terrain' : 'exact';
 }
 
-/** How far the full terrain may be from a height that is told. */
-function slackOf(certainty: Certainty): number {
+/** How far the full terrain may be from a height that is told; null: not known. */
+function slackOf(certainty: Certainty): number | null {
   return certainty.isExact ? 0 : certainty.deviation;
 }
 
 function certaintyNote(certainty: Certainty, sign: string): string {
   if (certainty.isExact) return `Heights ${exactly(certainty)}`;
+  if (certainty.deviation === null) return 'Heights are not certified here';
   return `Heights within \u00b1${bound(certainty.deviation)} ${sign}` +
     (certainty.of === 'terrain' ? ' of the source' : ' of the full terrain');
 }

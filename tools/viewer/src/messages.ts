@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the page and its Worker say to each other.
-import type { Certificate, Certified, Facts, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
+import type { Certified, Facts, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
 import type { Located, Profile, Sight, SightRequest } from './answers';
 import type { DrawnMesh } from './drawn_mesh';
 import type { Earth } from './earth';
@@ -35,8 +35,13 @@ export interface Viewshed {
   window: Window;
 }
 
-/** The certainty of heights of the mesh that is shown, or of the full terrain. `isExact`: they are the source's. */
-export interface Certainty extends Certificate {
+/**
+ * The certainty of heights of the mesh that is shown, or of the full terrain: as a Certificate, with null for what is not known.
+ * `isExact`: they are the source's.
+ */
+export interface Certainty {
+  error: number | null;
+  deviation: number | null;
   of: 'mesh' | 'terrain';
   isExact: boolean;
 }

@@ -57,21 +57,21 @@ export class Panel {
     return roundBelow(Math.max(this.relief, 1e-3) / 20);
   }
 
-  /** @param certificate  Of all that is in sight, or `everywhere`. */
-  showStatus(status: Status, certificate: Certificate, everywhere: boolean): void {
+  /** @param certificate  Of all that is in sight, or `everywhere`; null where nothing is known of a part of it. */
+  showStatus(status: Status, certificate: Certificate | null, everywhere: boolean): void {
     const { sign } = this;
-    const { error, deviation } = certificate;
-    const isExact = error === 0 && deviation === 0;
-    part('certified').textContent = isExact ? 'Exact' : `\u00b1${bound(error)} ${sign}`;
+    const isExact = certificate?.error === 0 && certificate.deviation === 0;
+    part('certified').textContent = isExact ? 'Exact' : certificate === null ? '\u2013' : `\u00b1${bound(certificate.error)} ${sign}`;
     const where = everywhere ? 'at every sample' : 'at every sample in sight';
     // Clicks tell the same: what a mesh is off between the samples, where there is no other bound.
-    const between = deviation > error ? `, \u00b1${bound(deviation)} ${sign} between` : '';
-    const whole = `certified ${where}${between}`;
+    const isWider = certificate !== null && certificate.deviation > certificate.error;
+    const between = isWider ? `, \u00b1${bound(certificate.deviation)} ${sign} between` : '';
+    const whole = certificate === null ? 'not certified in all that is in sight' : `certified ${where}${between}`;
     const waits = status.waitsFor === undefined ? 'still refining' : `waiting: ${status.waitsFor}`;
     part('certified-what').textContent = {
       loading: isExact ? waits : `${whole}, and ${waits}`,
       complete: isExact ? 'every sample is met' : whole,
-      held: status.heldBy === 'error' ? `${whole}, as asked for`
+      held: status.heldBy === 'error' ? whole + (certificate === null ? '' : ', as asked for')
         : `${whole}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,
       cut: `${whole}; the rest of the stream did not arrive`,
       damaged: `${whole}; the rest of the stream is damaged`,

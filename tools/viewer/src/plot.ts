@@ -18,6 +18,7 @@ function element(name: string, attributes: Record<string, string | number>, text
 export interface PlotOptions {
   profile: Profile;
   heightSign: string;
+  /** Infinity: not known. */
   deviation: number;
   /** A line of sight over the profile. */
   ray?: DrawnSight & { colour: string };
@@ -111,13 +112,16 @@ function addCursor(svg: SVGSVGElement, options: PlotOptions, x: (d: number) => n
   svg.onpointerleave = (): void => { cursor.setAttribute('visibility', 'hidden'); };
 }
 
-/** One line a station, with place and distance as they came; a gap is a line without a height. */
-export function csvOf(profile: Profile, deviation: number): string {
+/**
+ * One line a station, with place and distance as they came; a gap is a line without a height. Without a deviation nothing is known of
+ * the least and the greatest height.
+ */
+export function csvOf(profile: Profile, deviation: number | null): string {
   const { unit } = profile.lengths;
   const lines = [`distance_${unit === 'metre' ? 'm' : unit.replace(/\W+/g, '_')},x,y,height,height_min,height_max`];
   for (const s of profile.stations) {
-    const heights = s.height === null ? ['', '', ''] : [s.height, s.height - deviation, s.height + deviation];
-    lines.push([s.distance, s.x, s.y, ...heights].join(','));
+    const ends = s.height === null || deviation === null ? ['', ''] : [s.height - deviation, s.height + deviation];
+    lines.push([s.distance, s.x, s.y, s.height ?? '', ...ends].join(','));
   }
   return lines.join('\n') + '\n';
 }

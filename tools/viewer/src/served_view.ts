@@ -3,12 +3,13 @@
 // A terrain of a service, as fine as the camera needs it where it looks. Each answer is a stream that goes on from those before
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
-import { type Certified, DecodeError, type Decoder, Received, type Wanted, widened } from 'ptin-decoder';
-import { Problem } from './fetching';
+import {
+  type Certified, type Collection, DecodeError, type Decoder, mostServings, Problem, Received, type Wanted, widened,
+} from 'ptin-decoder';
 import { rounded } from './format';
 import type { Frame } from './frame';
 import type { Answer, Progress, Question } from './messages';
-import { type Collection, type Service, costOf } from './service';
+import { type Service, costOf } from './service';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 const firstBytes = 64 * 1024;
@@ -16,8 +17,6 @@ const laterBytes = 256 * 1024;
 const leastBytes = 32 * 1024;
 /** Milliseconds before a service that failed is asked again. */
 const firstWait = 1000, longestWait = 20000;
-/** The service takes 64. */
-const mostServings = 60;
 
 export class ServedView implements TerrainView {
   private shown: Received;
@@ -188,11 +187,14 @@ export class ServedView implements TerrainView {
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
     const response = await this.service.stream(to.asking(wanted, mostBytes));
-    if (response.body === null) throw new Problem('The service answered nothing', 'The connection to it broke.');
     this.cost = costOf(response);
-    await to.take(wanted, response, (bytes) => {
-      this.bytes += bytes;
+    let { bytes } = to;
+    for await (const _ of to.take(wanted, response)) {
+      // Frames come quicker than anybody looks.
+      if (to.bytes === bytes) continue;
+      this.bytes += to.bytes - bytes;
+      ({ bytes } = to);
       if (to === this.shown) this.events.grown();
-    });
+    }
   }
 }

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The endpoints of `ptin serve` that the viewer asks. Nothing else of it knows their addresses or answers.
-import type { MapPosition, StreamBody, Window } from 'ptin-decoder';
+import { type Collection, collectionAt, type MapPosition, opened, Problem, type StreamBody, streamOf, type Window } from 'ptin-decoder';
 import { count, number } from './format';
 import type { Frame } from './frame';
-import { Problem, opened } from './fetching';
 import type { PointState, Profile, Sight, SightPoint } from './answers';
 import type { Answer, Certainty, Question, QuestionOf } from './messages';
 import { stationsOf } from './stations';
-
-export interface Collection {
-  title: string;
-  bounds: Window;
-  heights: [number, number];
-}
 
 /** What an answer says that it cost: pages read, and time. */
 export function costOf(response: Response): string {
@@ -32,24 +25,10 @@ export class Service {
     this.base = `${service.replace(/\/$/, '')}/collections/${encodeURIComponent(id)}`;
   }
 
-  async collection(): Promise<Collection> {
-    const response = await opened(this.base, { headers: { Accept: 'application/json' } });
-    const json = await response.json().catch(() => {
-      throw new Problem('This is no terrain service', `What answered at ${this.base} is not JSON.`);
-    }) as Json;
-    const terrain = json.terrain as Partial<Collection> | undefined;
-    if (terrain?.bounds === undefined || terrain.heights === undefined) {
-      throw new Problem('This is no terrain service', `What answered at ${this.base} does not describe a terrain.`);
-    }
-    return { title: String(json.title ?? this.id), bounds: terrain.bounds, heights: terrain.heights };
-  }
+  collection(): Promise<Collection> { return collectionAt(this.base); }
 
   /** Asks for what lacks. Errors of 409 and 413 say that one has to begin anew. */
-  stream(asked: StreamBody): Promise<Response> {
-    return opened(`${this.base}/stream`, {
-      method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(asked),
-    });
-  }
+  stream(asked: StreamBody): Promise<Response> { return streamOf(this.base, asked); }
 
   /** An answer of the full terrain, whatever is drawn. */
   answer(question: Question, frame: Frame): Promise<Answer> {
@@ -123,11 +102,10 @@ function lineText({ from, to }: { from: MapPosition; to: MapPosition }): string 
   return `LINESTRING(${from.x} ${from.y}, ${to.x} ${to.y})`;
 }
 
-function certaintyOf(json: Json): Certainty {
-  return {
-    of: 'terrain', error: Number(json.certified_error ?? 0), deviation: Number(json.certified_deviation ?? 0),
-    isExact: json.exact === true,
-  };
+/** What an answer is certified for; what the service does not know, or does not tell, is null. */
+export function certaintyOf(json: Json): Certainty {
+  const told = (value: unknown): number | null => (typeof value === 'number' ? value : null);
+  return { of: 'terrain', error: told(json.certified_error), deviation: told(json.certified_deviation), isExact: json.exact === true };
 }
 
 /** Points and distances as the service has them, in the unit that it names. */

@@ -2,8 +2,7 @@
 //
 // A stream in a file on any web host: read from its first byte on, once, and decoded while it arrives. What came is kept, so
 // that a coarser mesh can be made of it without the host.
-import { Decoder } from 'ptin-decoder';
-import { Problem, opened } from './fetching';
+import { Decoder, Problem } from 'ptin-decoder';
 
 /** Bytes in the order in which they came, and a place in them. */
 export class KeptBytes {
@@ -64,10 +63,10 @@ export class StaticStream {
   /** Why no more is applied; null: there is more to apply. */
   get heldBy(): 'error' | 'vertices' | null {
     const decoder = this.next ?? this.decoder;
-    if (!decoder.hasMesh || decoder.isComplete) return null;
-    if (this.limits.error > 0 && decoder.certificate.error <= this.limits.error) return 'error';
-    // A frame may bring an eighth more.
-    return decoder.mesh.vertexCount * 1.125 > this.limits.mostVertices ? 'vertices' : null;
+    const { certificate } = decoder;
+    if (certificate === null || decoder.isComplete) return null;
+    if (this.limits.error > 0 && certificate.error <= this.limits.error) return 'error';
+    return decoder.mayExceed(this.limits.mostVertices) ? 'vertices' : null;
   }
 
   setError(error: number): void {
@@ -105,25 +104,12 @@ export class StaticStream {
 
   private splitsNoted = -1;
   private note(decoder: Decoder): void {
-    if (!decoder.hasMesh) {
+    const { certificate, splits } = decoder;
+    if (certificate === null) {
       this.splitsNoted = -1;
-    } else if (decoder.splits !== this.splitsNoted) {
-      this.splitsNoted = decoder.splits;
-      this.errors[this.frames++] = decoder.certificate.error;
+    } else if (splits !== this.splitsNoted) {
+      this.splitsNoted = splits;
+      this.errors[this.frames++] = certificate.error;
     }
   }
-}
-
-export interface OpenedStream {
-  reader: ReadableStreamDefaultReader<Uint8Array>;
-  /** 0: the host does not say, or says it of packed bytes. */
-  bytesInAll: number;
-}
-
-export async function openStream(url: string): Promise<OpenedStream> {
-  const response = await opened(url);
-  if (response.body === null) throw new Problem('The terrain is empty', 'The host answered without any bytes.');
-  const packed = response.headers.get('Content-Encoding');
-  const length = packed === null || packed === 'identity' ? Number(response.headers.get('Content-Length') ?? 0) : 0;
-  return { reader: response.body.getReader(), bytesInAll: length };
 }

@@ -34,7 +34,7 @@ class Viewer {
   private readonly worker: Worker;
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
-  private status: (Status & { certificate: Certificate }) | null = null;
+  private status: (Status & { certificate: Certificate | null }) | null = null;
   private readonly isServed: boolean;
   private linkTimer = 0;
   private viewTimer = 0;
@@ -116,18 +116,18 @@ class Viewer {
     this.spokenState = status.state;
   }
 
-  /** The certificate of all that is in sight; before there is a terrain, of nothing. */
-  private inSight({ certified }: Status): Certificate {
+  /** The certificate of all that is in sight; null where nothing is known. */
+  private inSight({ certified }: Status): Certificate | null {
     const { frame } = this;
-    return frame === null ? { error: Infinity, deviation: Infinity }
-      : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
+    return frame === null ? null : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
   }
 
   private showCertificate(): void {
     const { status, frame } = this;
     if (status === null || frame === null) return;
     const { certificate, certified } = status;
-    const isEverywhere = certified.parts.some((part) => holds(part.window, frame.bounds) && part.error <= certificate.error);
+    const most = certificate?.error ?? -1;
+    const isEverywhere = certified.some((part) => holds(part.window, frame.bounds) && part.error <= most);
     this.panel.showStatus(status, certificate, isEverywhere);
   }
 
@@ -152,9 +152,9 @@ class Viewer {
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
     if (this.status !== null) {
-      const { error, deviation } = this.status.certificate;
+      const before = this.status.certificate;
       const now = this.status.certificate = this.inSight(this.status);
-      if (now.error !== error || now.deviation !== deviation) this.showCertificate();
+      if (now?.error !== before?.error || now?.deviation !== before?.deviation) this.showCertificate();
     }
     return moves;
   }

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Worker: opens a terrain, hands the page meshes to draw, and passes its questions on.
-import { type Certified, DecodeError, type Decoder, toldBy } from 'ptin-decoder';
+import { type Certified, DecodeError, type Decoder, HostedBytes, Problem, toldBy } from 'ptin-decoder';
 import { drawnMesh, surfaceEdges } from './drawn_mesh';
 import { earthOf } from './earth';
-import { Problem, moduleAt } from './fetching';
+import { moduleAt } from './fetching';
 import { FileView } from './file_view';
 import { Frame } from './frame';
 import type { FromWorker, Question, Source, Status, ToWorker } from './messages';
 import { Service } from './service';
 import { ServedView } from './served_view';
-import { openStream } from './static_stream';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 const say = (message: FromWorker, transfer: Transferable[] = []): void =>
@@ -38,7 +37,7 @@ class Session {
   readonly view: TerrainView;
   private frame: Frame | null = null;
   /** The certificates of the mesh that was handed over last. */
-  private drawnCertified: Certified = { parts: [], otherwise: { error: Infinity, deviation: Infinity } };
+  private drawnCertified: Certified = [];
   private drawn: { decoder: Decoder; vertices: number; numbering: number } | null = null;
   private lastDrawn = 0;
   private drawingTook = 0;
@@ -124,7 +123,7 @@ let session: Promise<Session> | null = null;
 async function open({ source, folder, mostVertices }: Extract<ToWorker, { kind: 'open' }>): Promise<Session> {
   // The terrain is asked for while the decoder still comes.
   if (source.kind === 'stream') {
-    const opening = openStream(source.url);
+    const opening = new HostedBytes(source.url).open();
     opening.catch(() => undefined);
     const module = await moduleAt(folder, 'decoder.wasm');
     return new Session((events) => new FileView(nameOf(source), opening, module, folder, mostVertices, events));

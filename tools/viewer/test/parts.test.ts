@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The small parts: numbers for people, permalinks, CSV, kept bytes, windows, frames of degrees, costs.
-import { certifiedAt, type CertifiedPart, certifiedWithin, toldBy, widened, type Window } from 'ptin-decoder';
+import { certifiedAt, type CertifiedPart, certifiedWithin, HostedBytes, toldBy, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
 import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
+import { FileView } from '../src/file_view';
 import { Frame } from '../src/frame';
 import { defaults, fromHash, toHash } from '../src/permalink';
 import { csvOf } from '../src/plot';
-import { costOf } from '../src/service';
+import { certaintyOf, costOf } from '../src/service';
 import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
+import { host } from '../../decoder/test/host.mjs';
 import { decoded, decoderModule, terrain } from '../../decoder/test/support';
 
 test('numbers', () => {
@@ -47,21 +49,20 @@ test('a length of no known unit is told in map units', () => {
 test('what is certified in sight is the worst of it, and of a place the best that is known', () => {
   const part = (window: Window, error: number): CertifiedPart => ({ window, error, deviation: 3 * error });
   const bounds: Window = [0, 0, 100, 100];
-  const certified = {
-    parts: [part(bounds, 20), part([0, 0, 50, 50], 5), part([10, 10, 30.000000000001, 30], 1), part([30, 10, 40, 30], 1)],
-    otherwise: { error: 900, deviation: 900 },
-  };
+  const certified = [part(bounds, 20), part([0, 0, 50, 50], 5), part([10, 10, 30.000000000001, 30], 1), part([30, 10, 40, 30], 1)];
   const sees = (view: Window) => (w: Window): boolean => w[0] < view[2] && w[2] > view[0] && w[1] < view[3] && w[3] > view[1];
-  const within = (...view: [number, number, number, number]): number => certifiedWithin(certified, bounds, sees(view)).error;
+  const within = (...view: [number, number, number, number]): number => certifiedWithin(certified, bounds, sees(view))!.error;
   assert.equal(within(12, 12, 28, 28), 1);
   assert.equal(within(12, 12, 38, 28), 1, 'two windows cover it together');
   assert.equal(within(12, 12, 42, 28), 5);
   assert.equal(within(5, 5, 60, 20), 20);
-  assert.equal(certifiedWithin(certified, bounds, sees([12, 12, 42, 28])).deviation, 15);
-  assert.equal(certifiedWithin(certified, bounds, () => false).error, 20, 'nothing in sight: all of it');
-  assert.equal(certifiedWithin({ ...certified, parts: certified.parts.slice(1) }, bounds, sees([60, 60, 70, 70])).error, 900);
-  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }, { x: 35, y: 20 }]).error, 5, 'a line needs one window');
-  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }]).error, 1);
+  assert.equal(certifiedWithin(certified, bounds, sees([12, 12, 42, 28]))?.deviation, 15);
+  assert.equal(certifiedWithin(certified, bounds, () => false)?.error, 20, 'nothing in sight: all of it');
+  assert.equal(certifiedWithin(certified.slice(1), bounds, sees([60, 60, 70, 70])), null, 'of a part nothing is known');
+  assert.equal(certifiedWithin([], bounds, () => false), null);
+  assert.equal(certifiedAt(certified.slice(1), [{ x: 60, y: 60 }]), null);
+  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }, { x: 35, y: 20 }])?.error, 5, 'a line needs one window');
+  assert.equal(certifiedAt(certified, [{ x: 20, y: 20 }])?.error, 1);
 });
 
 test('a permalink brings back what it was made of', () => {
@@ -81,6 +82,7 @@ test('a profile as CSV, with its gaps, as its points came', () => {
     'distance_m,x,y,height,height_min,height_max\n0,0,0,5,4.5,5.5\n10,11,5,7,6.5,7.5\n10,11,5,,,\n' +
     '15,15,7.5,6,5.5,6.5\n20,20,10,8,7.5,8.5\n');
   assert.match(csvOf({ ...profile, lengths: { unit: 'US survey foot', metres: 0.3048 } }, 0), /^distance_US_survey_foot,x/);
+  assert.match(csvOf(profile, null), /\n0,0,0,5,,\n/, 'what is not known is not told');
   assert.equal(runsOf(stations).length, 2);
   assert.equal(heightAlong(stations, 5), 6);
   assert.equal(heightAlong(stations, 12), null);
@@ -136,6 +138,38 @@ test('what an answer cost, in words', () => {
   assert.equal(costOf(new Response(null)), '');
 });
 
+test('a file whose connection broke is read on', async () => {
+  const bytes = readFileSync(terrain('mountains_257').stream);
+  let answers = 0;
+  const web = await host('.', {
+    answer: (_, response) => {
+      response.writeHead(200, { 'Content-Length': bytes.length, ETag: '"a"' });
+      if (++answers === 1) response.write(bytes.subarray(0, 60000), () => { response.destroy(); });
+      else response.end(bytes);
+      return true;
+    },
+  });
+  const faults: unknown[] = [];
+  try {
+    const view = await new Promise<FileView>((resolve) => {
+      const opened = new FileView('m', new HostedBytes(`${web.url}m.ptins`).open(), decoderModule(), '', 1e9, {
+        grown: () => undefined, settled: () => { resolve(opened); }, failed: (error) => { faults.push(error); }, mended: () => undefined,
+      });
+      void opened.run();
+    });
+    assert.deepEqual([view.progress.state, faults, answers], ['complete', [], 2]);
+  } finally {
+    await web.close();
+  }
+});
+
+test('an answer that tells no certificate has none', () => {
+  const nothing = { of: 'terrain', error: null, deviation: null, isExact: false };
+  assert.deepEqual(certaintyOf({}), nothing);
+  assert.deepEqual(certaintyOf({ certified_error: null, certified_deviation: null, exact: false }), nothing);
+  assert.deepEqual(certaintyOf({ certified_error: 0, certified_deviation: 2.5, exact: false }), { ...nothing, error: 0, deviation: 2.5 });
+});
+
 test('refinement stops at an error, becomes coarser again, and goes on', () => {
   const stream = readFileSync(terrain('mountains_257').stream);
   const still = new StaticStream(decoderModule(), { error: 0, mostVertices: 1e9 });
@@ -144,11 +178,11 @@ test('refinement stops at an error, becomes coarser again, and goes on', () => {
   still.setError(10);
   apply();
   assert.equal(still.heldBy, 'error');
-  const first = { error: still.decoder.certificate.error, vertices: still.decoder.mesh.vertexCount };
+  const first = { error: still.decoder.certificate!.error, vertices: still.decoder.mesh.vertexCount };
   assert.ok(first.error <= 10);
   still.setError(1);
   apply();
-  assert.ok(still.decoder.certificate.error <= 1 && still.decoder.mesh.vertexCount > first.vertices);
+  assert.ok(still.decoder.certificate!.error <= 1 && still.decoder.mesh.vertexCount > first.vertices);
   still.setError(10);
   apply();
   assert.equal(still.decoder.mesh.vertexCount, first.vertices);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A terrain of a service, played by the program: only what is missing is asked for, within a budget of vertices.
-import { certifiedAt, type Serving, type StreamBody, type Wanted, widened, type Window } from 'ptin-decoder';
+import { certifiedAt, type Collection, Problem, type Serving, type StreamBody, type Wanted, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { Problem } from '../src/fetching';
-import type { Collection, Service } from '../src/service';
+import type { Service } from '../src/service';
 import { ServedView } from '../src/served_view';
 import { decoderModule, file, ptin, terrain } from '../../decoder/test/support';
 
@@ -27,7 +26,7 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
   const faults: unknown[] = [];
   let wake: (() => void) | null = null;
   const service = {
-    async stream({ window, error, max_bytes, have = [] }: StreamBody): Promise<Response> {
+    async stream({ window, error = 0, max_bytes, have = [] }: StreamBody): Promise<Response> {
       const wanted: Wanted = { window, error };
       asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
       refuses(asked[asked.length - 1], max_bytes);
@@ -82,8 +81,8 @@ test('each window keeps what it is certified for, however fine the last one is',
   await settled();
   view.setView(near);
   await settled();
-  assert.ok(view.decoder.certificate.error <= 1, 'of the last window');
-  const told = (at: { x: number; y: number }): number => certifiedAt(view.certified, [at]).error;
+  assert.ok(view.decoder.certificate!.error <= 1, 'of the last window');
+  const told = (at: { x: number; y: number }): number => certifiedAt(view.certified, [at])!.error;
   const inside = { x: (middle[0] + middle[2]) / 2, y: (middle[1] + middle[3]) / 2 };
   const aside = { x: bounds[0] + 1, y: bounds[1] + 1 };
   assert.ok(told(inside) <= 1);
@@ -102,7 +101,7 @@ test('detail comes where the camera looks, once', async () => {
   assert.ok(view.decoder.mesh.vertexCount > first + 1000);
   const requests = asked.length;
   assert.equal(asked[requests - 1].have.length, requests - 1, 'what was served is told');
-  assert.ok(view.decoder.certificate.error <= 1);
+  assert.ok(view.decoder.certificate!.error <= 1);
   view.setView(near);
   await settled();
   view.setView([near[0], { window: middle, error: 1.1 }]);
@@ -155,7 +154,7 @@ test('refusals are mended: a replaced file begins anew, too much becomes less', 
   view.setView([{ window: bounds, error: 5 }]);
   await settled();
   assert.ok(asked.some((a, i) => i > 1 && a.have.length === 0));
-  assert.ok(view.decoder.certificate.error <= 5);
+  assert.ok(view.decoder.certificate!.error <= 5);
   view.setView([{ window: bounds, error: 5 }, { window: middle, error: 1 }]);
   await settled();
   assert.equal(view.progress.heldBy, 'service');

@@ -12,14 +12,15 @@ import { assets, file, served, terrain } from '../support';
 
 const here = process.env.PTIN_PACKAGE ?? '';
 const examples = ['three', 'maplibre', 'deck'] as const;
+type Seen = { state: string; certified: { error: number } | null; triangles: number };
 const site = file('examples');
 const { store } = terrain('mountains_257');
 let browser: Browser;
 
 before(async () => {
   await build({
-    entryPoints: examples.map((name) => join(here, 'examples', `${name}.js`)), outdir: site, bundle: true, format: 'esm', logLevel: 'warning',
-    conditions: ['source'], alias: { 'ptin-decoder': join(here, 'src/index.ts') }, nodePaths: [join(here, 'node_modules')],
+    entryPoints: [...examples, 'worker'].map((name) => join(here, 'examples', `${name}.js`)), outdir: site, bundle: true, format: 'esm', logLevel: 'warning',
+    conditions: ['ptin-source'], alias: { 'ptin-decoder': join(here, 'src/index.ts') }, nodePaths: [join(here, 'node_modules')],
   });
   cpSync(join(here, 'examples/page.html'), join(site, 'page.html'));
   cpSync(join(assets, 'decoder.wasm'), join(site, 'decoder.wasm'));
@@ -71,3 +72,26 @@ for (const name of examples) {
     }
   }, 0, '--cors', '*'));
 }
+
+test('a Worker hands steps over', () => served(`dem=${store}`, async (address) => {
+  const pages = await host(site);
+  const page = await browser.newPage();
+  try {
+    await page.goto(`${pages.url}page.html`);
+    const seen = await page.evaluate((terrain) => new Promise<Seen[]>((resolve, reject) => {
+      const worker = new Worker('worker.js', { type: 'module' }), steps: Seen[] = [];
+      worker.onerror = ({ message }) => { reject(new Error(message)); };
+      worker.onmessage = ({ data: { state, certified, indices, message } }) => {
+        steps.push({ state: message ?? state, certified, triangles: (indices?.length ?? 0) / 3 });
+        if (state !== 'refining') resolve(steps);
+      };
+      worker.postMessage({ terrain, error: 5 });
+    }), `${address}collections/dem`);
+    const last = seen[seen.length - 1];
+    assert.equal(last.state, 'reached');
+    assert.ok(last.certified!.error <= 5 && last.triangles > 1000 && seen.length > 1, JSON.stringify(last));
+  } finally {
+    await page.close();
+    await pages.close();
+  }
+}, 0, '--cors', '*'));

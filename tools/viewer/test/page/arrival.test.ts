@@ -6,7 +6,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { host } from '../../../decoder/test/host.mjs';
-import { file } from '../../../decoder/test/support';
+import { file, ptin } from '../../../decoder/test/support';
 import { appears, colours, complete, counted, fast, layOut, onPage, portioned, rested, site, store, text, until, wide } from './browser';
 
 test('the page shows the terrain while it arrives, and then rests', () => onPage(portioned.url, async (page) => {
@@ -64,6 +64,15 @@ test('what is wrong is said in a sentence', async () => {
     await complete(page);
     assert.match(await text(page, '#certified-what'), /did not arrive/);
     assert.ok(await counted(page, '#fact-vertices') > 10000);
+  });
+});
+
+test('a stream for isolines, of whose mesh nothing is known, certifies nothing', async () => {
+  ptin('stream', store, '--level', '1000', '--error', '5', '-o', join(site, 'isolines.ptins'));
+  await onPage(`${fast.url}?stream=isolines.ptins`, async (page) => {
+    await complete(page);
+    assert.equal(await text(page, '#certified'), '\u2013');
+    assert.match(await text(page, '#certified-what'), /^not certified/);
   });
 });
 

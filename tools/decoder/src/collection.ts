@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// A terrain of `ptin serve` by its address, http://host/collections/ID: what it is, and streams of what a receiver lacks.
+import type { Window } from './map_window.js';
+import type { Serving } from './received.js';
+import { Problem, opened } from './requests.js';
+
+/** What a service tells of a terrain. */
+export interface Collection {
+  title: string;
+  bounds: Window;
+  /** The least and the greatest of the samples. */
+  heights: readonly [number, number];
+}
+
+/** What POST .../stream takes. */
+export interface StreamBody {
+  window: Window;
+  error?: number;
+  max_bytes: number;
+  have?: readonly Serving[];
+  fingerprint?: string;
+}
+
+export async function collectionAt(address: string, signal?: AbortSignal): Promise<Collection> {
+  const response = await opened(address, { signal: signal ?? null, headers: { Accept: 'application/json' } });
+  const json = await response.json().catch(() => {
+    signal?.throwIfAborted();
+    throw new Problem('This is no terrain service', `What answered at ${address} is not JSON.`, response.status);
+  }) as { title?: unknown; terrain?: Partial<Collection> } | null;
+  const terrain = json?.terrain;
+  if (terrain?.bounds === undefined || terrain.heights === undefined) {
+    throw new Problem('This is no terrain service', `What answered at ${address} does not describe a terrain.`, response.status);
+  }
+  return { title: String(json?.title ?? address.split('/').pop()), bounds: terrain.bounds, heights: terrain.heights };
+}
+
+/** Asks for what lacks. Problems of 409 and 413 say that one has to begin anew, or to ask for less. */
+export function streamOf(address: string, asked: StreamBody, signal?: AbortSignal): Promise<Response> {
+  return opened(`${address}/stream`, {
+    method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(asked), signal: signal ?? null,
+  });
+}
