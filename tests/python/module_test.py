@@ -839,7 +839,7 @@ class Build(unittest.TestCase):
 
     def test_the_transform_of_pixels_is_one(self):
         grid = np.arange(12.0).reshape(3, 4)
-        report = ptin.build(grid, "pixels.ptin", transform=(1, 0, 0, 0, 1, 0))
+        report = ptin.build(grid, "pixels.ptin", transform=(1, 0, 0, 0, 1, 0), a_srs="EPSG:32611")
         t = ptin.open("pixels.ptin")
         self.assertEqual((report.warnings, t.bounds), ([], (0.5, 0.5, 3.5, 2.5)))
         self.assertEqual(t.locate((3.5, 0.5)).z, grid[0, 3])
@@ -898,7 +898,7 @@ class Build(unittest.TestCase):
     def test_classes_are_numbers_ranges_and_names(self):
         path = os.path.join(ROOT, "tests/data/ground_points.csv")  # which has none, as is seen once they are read
         for classes in (2, np.uint8(2), [2, 9], (2, 9), np.array([2, 9]), "2,8-10", "!noise", ["ground", 9]):
-            with self.assertRaisesRegex(ptin.InvalidArgument, "is for LAS"):
+            with self.assertRaisesRegex(ptin.InvalidArgument, "only LAS has classes"):
                 ptin.build(path, "classes.ptin", classes=classes)
         for wrong in (256, "grund", [2, "9-"], 2.5, [None]):
             with self.assertRaisesRegex(ptin.InvalidArgument, "is no class of LAS|is no value of the option"):

@@ -113,9 +113,8 @@ LocateResult locate_all(const OpenTerrain& t, std::span<const MapPoint> points,
 
 py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
                  const std::optional<std::string>& crs) {
-  std::stop_source stop;
   LocateRequest request;
-  asked.put(request, stop.get_token());
+  asked.put(request, {});  // one point is found before anybody could ask for a stop
   const bool may_wait = t.is_remote || asked.vertices;
   const std::optional<MapPoint> single = single_position(xy);
   const bool is_quick = !crs && !may_wait;
@@ -127,6 +126,8 @@ py::tuple locate(const OpenTerrain& t, const py::object& xy, const Asked& asked,
   if (is_scalar && is_quick && is_place(points.front())) {
     return locate_one(t, points.front(), request);
   }
+  std::stop_source stop;
+  request.limits.stop = stop.get_token();
   HeightArrays arrays(points.size());
   const HeightPlaces places(arrays);
   const auto work = [&] {
