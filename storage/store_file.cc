@@ -165,6 +165,15 @@ const RecordIndex& StoreFile::index() const noexcept { return *index_; }
 const PackedRTree& StoreFile::star_index() const noexcept { return *index_; }
 const PageStore& StoreFile::pages() const noexcept { return *pages_; }
 const PointDirectory* StoreFile::directory() const noexcept { return directory_.get(); }
+const Ground* StoreFile::ground() const {
+  if (!front_->ground) {
+    return nullptr;
+  }
+  std::call_once(ground_once_, [this] {
+    ground_ = std::make_unique<const Ground>(*file_, *front_->ground, front_->facts.heights);
+  });
+  return ground_.get();
+}
 
 StoreFile::PageInfo StoreFile::page_info(PageId id) const {
   const layout::NodeEntry d = nodes_->descriptor(id);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,7 @@
 namespace ptin {
 
 class DescribedPageStore;
+class Ground;
 class IndexNodes;
 class MappedFile;
 class PackedRTree;
@@ -101,6 +103,10 @@ class StoreFile {
   [[nodiscard]] const PageStore& pages() const noexcept;
   /// The directory, for points of a file that lies elsewhere; null when it does not, or has none.
   [[nodiscard]] const PointDirectory* directory() const noexcept;
+  /// The heights of the raster that the terrain is of; null where the file has none. They are those of
+  /// the full TIN's vertices, which are the raster's samples, and its triangles follow from them.
+  /// @throws Error corruption, io_error  Cost: the first time one read.
+  [[nodiscard]] const Ground* ground() const;
 
   /// What the descriptor of a page says.
   struct PageInfo {
@@ -153,6 +159,8 @@ class StoreFile {
   std::unique_ptr<DescribedPageStore> pages_;
   std::unique_ptr<PackedRTree> index_;
   std::unique_ptr<PointDirectory> directory_;
+  mutable std::once_flag ground_once_;
+  mutable std::unique_ptr<const Ground> ground_;  ///< Made when it is first asked for.
 };
 
 }  // namespace ptin

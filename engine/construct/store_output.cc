@@ -189,6 +189,12 @@ void StoreOutput::resume(const nlohmann::json& position) {
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
 
+void StoreOutput::add_ground(const std::function<void(StoreWriter&)>& add) {
+  if (base_error_ == 0.0) {
+    add(*writer_);
+  }
+}
+
 void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
                           const std::vector<std::string>& inputs, BuildReport& report) {
   CoarsestTin coarsest = coarsest_tin(t0);

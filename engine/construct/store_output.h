@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -55,6 +56,10 @@ class StoreOutput final : public SegmentOutput {
   [[nodiscard]] nlohmann::json position() const override;
   void sync() override { writer_->sync(); }
   void resume(const nlohmann::json& position) override;
+
+  /// Has the samples of a raster added, where each of them is a vertex of the file with its own height.
+  /// @throws Error as StoreWriter::add_ground
+  void add_ground(const std::function<void(StoreWriter&)>& add);
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
   /// @param t0_deaths  One for each of t0.triangles, as deaths_of().

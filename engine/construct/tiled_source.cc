@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/collapse/first_pass.h"
+#include "engine/construct/raster/raster_ground.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/tasks/task.h"
 #include "engine/construct/tin/tin_tile.h"
@@ -24,7 +25,11 @@ TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
       return start_raster_tile(*own, window, units, thins_sides);
     };
   };
-  return {source.frame(), units, TileTree(source.width(), source.height(), side), make_starter};
+  const auto add_ground = [&source](StoreWriter& writer, const std::stop_token& stop) {
+    add_raster_ground(source, writer, stop);
+  };
+  return {source.frame(), units, TileTree(source.width(), source.height(), side), make_starter,
+          add_ground};
 }
 
 TiledSource tiled(const PointBuckets& points, const BuildOptions& options,

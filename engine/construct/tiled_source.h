@@ -22,6 +22,7 @@
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/construct/tin/tin_source.h"
 #include "engine/error.h"
+#include "storage/store_writer.h"
 
 namespace ptin::build_internal {
 
@@ -31,6 +32,8 @@ struct TiledSource {
   MeasureUnits units;
   TileTree tree;
   std::function<LeafStarter()> make_starter;  ///< Called once for each task that runs at once.
+  /// Gives the samples of a raster to the file; empty: the source is none.
+  std::function<void(StoreWriter&, const std::stop_token&)> add_ground = {};
 };
 
 /// @param source  Must outlive the result.

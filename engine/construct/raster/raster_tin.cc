@@ -177,22 +177,6 @@ Tin make(const Window& w) {
 
 }  // namespace
 
-Diagonal cell_diagonal(const RasterCell& cell, GridPoint corner) noexcept {
-  const int rising_void = !cell.has_height[0] + !cell.has_height[2];
-  const int falling_void = !cell.has_height[1] + !cell.has_height[3];
-  if (rising_void != falling_void) {
-    return rising_void < falling_void ? Diagonal::kRising : Diagonal::kFalling;
-  }
-  if (rising_void == 0) {
-    const double rising = std::abs(cell.code[0] - cell.code[2]);
-    const double falling = std::abs(cell.code[1] - cell.code[3]);
-    if (rising != falling) {
-      return rising < falling ? Diagonal::kRising : Diagonal::kFalling;
-    }
-  }
-  return parity_of(corner) == 0 ? Diagonal::kRising : Diagonal::kFalling;
-}
-
 Tin make_raster_tin(std::span<const HeightBits> heights, std::span<const std::uint8_t> valid,
                     const SampleRange& window, const HeightEncoding& encoding) {
   check(window, heights, valid);

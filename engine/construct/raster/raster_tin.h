@@ -10,27 +10,10 @@
 #include "engine/construct/tile/tile_tree.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
+#include "engine/mesh/raster_cell.h"
 #include "engine/mesh/tin.h"
 
 namespace ptin {
-
-/// The diagonal that cuts a cell: from its lower left to its upper right corner, or from its lower
-/// right to its upper left one.
-enum class Diagonal : std::uint8_t { kRising = 0, kFalling = 1 };
-
-/// A cell's four corners, counter-clockwise from the lower left.
-struct RasterCell {
-  double code[4];  ///< Height codes; not looked at where `has_height` is 0.
-  std::uint8_t has_height[4];
-};
-
-/// The diagonal that cuts the cell whose lower left corner is the grid point `corner`. It depends
-/// on the cell alone, so tiles agree. In this order:
-///   1. the diagonal with fewer ends without a height (so that one void corner costs one triangle,
-///      not two);
-///   2. with four heights, the diagonal with the smaller difference between the codes at its ends;
-///   3. rising where x + y of `corner` is even, falling where it is odd.
-[[nodiscard]] Diagonal cell_diagonal(const RasterCell& cell, GridPoint corner) noexcept;
 
 /// The full TIN of a window. A triangle is void when one of its corners has no height.
 /// @param heights   Row-major, row 0 in the south. Where `valid` is 0 the height is not looked at,

@@ -36,7 +36,10 @@ class LivingReader {
  public:
   /// @param terrain, detail  Borrowed for the life of the reader.
   LivingReader(const OpenedTerrain& terrain, const Detail& detail)
-      : store_(terrain.store()), heights_(store_.facts().heights), stars_(store_, detail) {}
+      : terrain_(terrain),
+        store_(terrain.store()),
+        heights_(store_.facts().heights),
+        stars_(store_, detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
   /// of the file, then those that the level tells last. False when the visitor ended it.
@@ -48,6 +51,8 @@ class LivingReader {
   bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);
 
  private:
+  bool read_ground(const Ground& ground, const LivingPlace& place, QueryContext& context,
+                   LivingVisitor& visitor) const;
   [[nodiscard]] bool asks_directory() const;
   template <class Page>
   bool take_all(std::span<const Page> pages, std::uint64_t records, const LivingPlace& place,
@@ -57,6 +62,7 @@ class LivingReader {
                  LivingVisitor& visitor);
   [[nodiscard]] bool is_wanted(const LivingTriangle& t, const LivingPlace& place) const;
 
+  const OpenedTerrain& terrain_;
   const StoreFile& store_;
   HeightEncoding heights_;
   LivingFilter filter_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/query/living/ground_cells.h"
 #include "engine/query/living/level_stars.h"
 #include "engine/query/walk/spot_set.h"
 #include "storage/packed_rtree.h"
@@ -297,12 +298,26 @@ void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> fo
   offer_all(set, from_aside, spots, found);
 }
 
+/// The triangles at spots of the full TIN of a raster.
+void find_on_ground(const StoreFile& store, const Ground& ground, std::span<const Spot> spots,
+                    std::span<TriangleAt> found, QueryContext& context) {
+  GroundAtSpots triangles(ground, store.facts().heights);
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    context.check_stop();
+    triangles.visit(
+        spots[i], [&](const LivingTriangle& t) { offer(t, spots[i], found[i]); }, context.cost.io);
+  }
+}
+
 }  // namespace
 
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
-  if (!spots.empty()) {
+  const bool is_full = detail.is_by_error() && detail.tolerance() < 0;
+  if (const Ground* const ground = is_full ? terrain.ground() : nullptr) {
+    find_on_ground(terrain.store(), *ground, spots, found, context);
+  } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);
   }
 }

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The samples of a raster as the file keeps them: tiles along a curve.
+#pragma once
+
+#include <stop_token>
+
+#include "engine/construct/raster/raster_source.h"
+#include "storage/store_writer.h"
+
+namespace ptin {
+
+/// Gives all samples to the writer. The bytes depend on the samples alone.
+/// @throws Error cancelled; as RasterSource::read() and StoreWriter::add_ground()
+/// Cost: one reading of the source, and 10 ns a sample. Memory: 6 MiB.
+void add_raster_ground(const RasterSource& source, StoreWriter& writer,
+                       const std::stop_token& stop);
+
+}  // namespace ptin

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/query/living/ground_cells.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/mesh/raster_cell.h"
+
+namespace ptin {
+
+namespace {
+
+/// Cells by their lower left samples, from the least to the greatest.
+struct Cells {
+  std::int64_t min_x, min_y, max_x, max_y;
+};
+
+/// Cells of one tile, as triangles.
+class CellsOfTile {
+ public:
+  CellsOfTile(const Ground& ground, const HeightEncoding& heights) noexcept
+      : shape_(ground.facts().shape), numbers_(ground.numbers()), heights_(heights) {}
+
+  /// Takes the triangles of those cells that the tile has.
+  template <class Take>
+  void visit(const Ground::TileBounds& at, const GroundTile& tile, const Cells& cells,
+             const Take& take) const {
+    const std::int64_t left = shape_.first_of(at.column), low = shape_.first_of(at.row);
+    const std::int64_t last_x = std::min<std::int64_t>(cells.max_x, left + tile.width - 2);
+    const std::int64_t last_y = std::min<std::int64_t>(cells.max_y, low + tile.height - 2);
+    const GridPoint first{static_cast<std::int32_t>(left), static_cast<std::int32_t>(low)};
+    for (std::int64_t y = std::max(cells.min_y, low); y <= last_y; ++y) {
+      for (std::int64_t x = std::max(cells.min_x, left); x <= last_x; ++x) {
+        visit_cell(tile, first, static_cast<std::int32_t>(x - left),
+                   static_cast<std::int32_t>(y - low), take);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] LivingTriangle::Corner corner(const GroundTile& tile, GridPoint first,
+                                              std::int32_t x, std::int32_t y) const {
+    const std::size_t i = static_cast<std::size_t>(y) * tile.width + static_cast<std::size_t>(x);
+    const bool has_height = tile.is_void.empty() || tile.is_void[i] == 0;
+    return {
+        {first.x + x, first.y + y}, has_height ? numbers_.bits(tile.heights[i]) : 0, has_height};
+  }
+
+  template <class Take>
+  void visit_cell(const GroundTile& tile, GridPoint first, std::int32_t x, std::int32_t y,
+                  const Take& take) const {
+    const std::array<LivingTriangle::Corner, 4> corners = {
+        corner(tile, first, x, y), corner(tile, first, x + 1, y), corner(tile, first, x + 1, y + 1),
+        corner(tile, first, x, y + 1)};
+    RasterCell cell{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      cell.code[i] = heights_.code(corners[i].height);
+      cell.has_height[i] = corners[i].has_height ? 1 : 0;
+    }
+    for (const auto& numbers : cell_triangles(cell_diagonal(cell, corners[0].position))) {
+      LivingTriangle t;
+      t.deviation = 0.0;
+      t.heights = {};
+      for (std::size_t i = 0; i < 3; ++i) {
+        t.corner[i] = corners[numbers[i]];
+        t.is_void = t.is_void || !t.corner[i].has_height;
+      }
+      for (std::size_t i = 0; i < 3 && !t.is_void; ++i) {
+        const double code = cell.code[numbers[i]];
+        t.heights = {std::min(t.heights.lo, code), std::max(t.heights.hi, code)};
+      }
+      take(t);
+    }
+  }
+
+  const GroundShape& shape_;
+  const GroundNumbers& numbers_;
+  const HeightEncoding heights_;
+};
+
+/// The cells that meet a closed box: those beside it, too, whose sides lie on it.
+Cells cells_of(const GridBox& box) noexcept {
+  return {std::int64_t{box.min_x} - 1, std::int64_t{box.min_y} - 1, box.max_x, box.max_y};
+}
+
+/// The cells that hold a spot.
+Cells cells_at(Spot spot) noexcept {
+  const std::int64_t x = spot.x >> kSpotBits, y = spot.y >> kSpotBits;
+  const auto is_between = [](std::int64_t v) {
+    return (v & ((std::int64_t{1} << kSpotBits) - 1)) != 0;
+  };
+  return {is_between(spot.x) ? x : x - 1, is_between(spot.y) ? y : y - 1, x, y};
+}
+
+/// The tiles that have some cells; none where the raster has none of them.
+std::optional<Ground::Tiles> tiles_of(const GroundShape& shape, const Cells& cells) {
+  const std::int64_t last_x = std::int64_t{shape.width} - 2;
+  const std::int64_t last_y = std::int64_t{shape.height} - 2;
+  if (cells.max_x < 0 || cells.max_y < 0 || cells.min_x > last_x || cells.min_y > last_y) {
+    return std::nullopt;
+  }
+  const auto tile = [&](std::int64_t cell, std::int64_t last) {
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(cell, 0, last) >> shape.side_log2);
+  };
+  return Ground::Tiles{tile(cells.min_x, last_x), tile(cells.min_y, last_y),
+                       tile(cells.max_x, last_x), tile(cells.max_y, last_y)};
+}
+
+}  // namespace
+
+std::uint64_t ground_samples(const GroundShape& shape, const GridBox& box) {
+  const std::optional<Ground::Tiles> tiles = tiles_of(shape, cells_of(box));
+  if (!tiles) return 0;
+  const std::uint64_t columns = std::uint64_t{tiles->last_column} - tiles->first_column + 1;
+  const std::uint64_t rows = std::uint64_t{tiles->last_row} - tiles->first_row + 1;
+  return (columns * rows) << (2 * shape.side_log2);
+}
+
+bool visit_ground(const Ground& ground, const HeightEncoding& heights, const GroundWish& wish,
+                  const std::function<bool(std::size_t)>& begin,
+                  const std::function<void(const LivingTriangle&)>& take, IoCounters& counters) {
+  const GroundShape& shape = ground.facts().shape;
+  const std::optional<Ground::Tiles> tiles = tiles_of(shape, cells_of(wish.box));
+  if (!tiles) return true;
+  const auto wants = [&](const Ground::TileBounds& b) {
+    if (!wish.may_hold) return true;
+    const auto at = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
+    const GridBox box{at(shape.first_of(b.column)), at(shape.first_of(b.row)),
+                      at(shape.first_of(b.column) + shape.samples_of(b.column, shape.width) - 1),
+                      at(shape.first_of(b.row) + shape.samples_of(b.row, shape.height) - 1)};
+    const Interval codes = b.least > b.greatest
+                               ? Interval{}
+                               : Interval{heights.code(ground.numbers().bits(b.least)),
+                                          heights.code(ground.numbers().bits(b.greatest))};
+    return wish.may_hold(box, codes);
+  };
+  const CellsOfTile cells(ground, heights);
+  return ground.visit(
+      *tiles, wants,
+      [&](const Ground::TileBounds& at, const GroundTile& tile) {
+        if (!begin(2 * tile.samples())) return false;
+        cells.visit(at, tile, cells_of(wish.box), [&](const LivingTriangle& t) {
+          if (meets(box_of(t), wish.box)) take(t);
+        });
+        return true;
+      },
+      counters);
+}
+
+const GroundAtSpots::Kept& GroundAtSpots::tile_at(std::uint32_t column, std::uint32_t row,
+                                                  IoCounters& counters) {
+  Kept& kept = kept_[(column & 1) + 2 * (row & 1)];
+  if (kept.column != column || kept.row != row) {
+    kept.column = UINT32_MAX;  // until it is read
+    ground_.read(column, row, page_, kept.tile, counters);
+    kept.column = column;
+    kept.row = row;
+  }
+  return kept;
+}
+
+void GroundAtSpots::visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,
+                          IoCounters& counters) {
+  const GroundShape& shape = ground_.facts().shape;
+  const Cells wanted = cells_at(spot);
+  const std::optional<Ground::Tiles> tiles = tiles_of(shape, wanted);
+  if (!tiles) return;
+  const CellsOfTile cells(ground_, heights_);
+  for (std::uint32_t row = tiles->first_row; row <= tiles->last_row; ++row) {
+    for (std::uint32_t column = tiles->first_column; column <= tiles->last_column; ++column) {
+      const Kept& kept = tile_at(column, row, counters);
+      cells.visit({column, row, 0, 0}, kept.tile, wanted, take);
+    }
+  }
+}
+
+}  // namespace ptin

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is told of a raster whose heights are in the file, and how its heights are numbers of tiles.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "engine/geometry/height.h"
+#include "storage/ground_shape.h"
+#include "storage/ground_tile.h"
+#include "storage/page_columns.h"
+
+namespace ptin {
+
+/// How the source holds its numbers; the values are those of the format.
+enum class SourceNumber : std::uint32_t {
+  kUnknown = 0,
+  kUInt8 = 1,
+  kInt8 = 2,
+  kUInt16 = 3,
+  kInt16 = 4,
+  kUInt32 = 5,
+  kInt32 = 6,
+  kFloat32 = 7,
+  kFloat64 = 8,
+};
+
+struct GroundFacts {
+  GroundShape shape;
+  /// Of heights that are stored as float32: each is float(step * k), and tiles hold k. 0: they hold the
+  /// floats in their order. Of int32 it is 0, and tiles hold the codes.
+  double step = 0.0;
+  SourceNumber source = SourceNumber::kUnknown;
+  /// The number that void samples have in the source; none: NaN, a mask, or several of them.
+  std::optional<double> nodata;
+  /// The source's numbers come back bit for bit.
+  bool is_exact = false;
+};
+
+/// Heights as tiles hold them, and as stored elsewhere in the file.
+class GroundNumbers {
+ public:
+  GroundNumbers(const HeightEncoding& heights, double step) noexcept
+      : type_(heights.type), step_(step) {}
+
+  [[nodiscard]] HeightBits bits(OrderedHeight ordered) const noexcept {
+    if (step_ == 0) return height_of_ordered(ordered, type_);
+    const double k = std::bit_cast<std::int32_t>(ordered ^ kSign);
+    return std::bit_cast<HeightBits>(static_cast<float>(step_ * k));
+  }
+  /// REQUIRES: with a step, the height is that of a whole number.
+  [[nodiscard]] OrderedHeight ordered(HeightBits bits) const noexcept {
+    if (step_ == 0) return ordered_height(bits, type_);
+    const double k = std::nearbyint(std::bit_cast<float>(bits) / step_);
+    return std::bit_cast<std::uint32_t>(static_cast<std::int32_t>(k)) ^ kSign;
+  }
+
+ private:
+  static constexpr std::uint32_t kSign = 0x80000000U;
+  HeightType type_;
+  double step_;
+};
+
+/// Puts facts into the root above the pages.
+void put_facts(const GroundFacts& facts, std::uint64_t pages, layout::GroundNode& root) noexcept;
+/// @return What is wrong with the root, as a sentence; null where nothing is.
+[[nodiscard]] const char* take_facts(const layout::GroundNode& root, GroundFacts& facts,
+                                     std::uint64_t& pages) noexcept;
+
+}  // namespace ptin

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "storage/ground_tile.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "storage/bit_fields.h"
+
+namespace ptin {
+
+namespace {
+
+/// How a tile tells its void samples.
+enum class Voids : std::uint8_t { kNone = 0, kAll = 1, kBits = 2, kRuns = 3 };
+constexpr unsigned kVoidsBits = 2;
+constexpr unsigned kHeightBits = 32;
+/// A number of samples, or a place among them: a tile has at most 65 x 65.
+constexpr unsigned kPlaceBits = 13;
+static_assert((kMostGroundSide + 1) * (kMostGroundSide + 1) < (1U << kPlaceBits));
+/// Widths from 0 to 32.
+constexpr unsigned kWidthBits = 6;
+/// Residuals of a block have one width.
+constexpr std::uint32_t kBlockWidth = 8, kBlockHeight = 4;
+
+/// Small numbers of either sign as small numbers.
+constexpr std::uint32_t zigzag(std::uint32_t residual) noexcept {
+  return (residual << 1) ^ (0U - (residual >> 31));
+}
+constexpr std::uint32_t unzigzag(std::uint32_t coded) noexcept {
+  return (coded >> 1) ^ (0U - (coded & 1));
+}
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::vector<std::byte>& to) : to_(to), first_(to.size()) {}
+  void put(std::uint64_t value, unsigned width) {
+    to_.resize(first_ + (at_ + width) / 8 + 1 + kGroundTileTail);
+    write_bits(to_.data() + first_, at_, width, value);
+    at_ += width;
+  }
+  /// Ends at a whole byte.
+  void end() { to_.resize(first_ + (at_ + 7) / 8); }
+
+ private:
+  std::vector<std::byte>& to_;
+  std::size_t first_, at_ = 0;
+};
+
+class BitReader {
+ public:
+  explicit BitReader(std::span<const std::byte> from) : from_(from) {}
+  /// REQUIRES: has(width)
+  [[nodiscard]] std::uint32_t take(unsigned width) noexcept {
+    const std::uint64_t value = read_bits(from_.data(), at_, width);
+    at_ += width;
+    return static_cast<std::uint32_t>(value);
+  }
+  [[nodiscard]] bool has(std::size_t bits) const noexcept { return at_ + bits <= 8 * from_.size(); }
+  /// Nothing follows but the zeros that fill up the last byte.
+  [[nodiscard]] bool is_at_end() noexcept {
+    const std::size_t left = 8 * from_.size() - at_;
+    return left < 8 && (left == 0 || take(static_cast<unsigned>(left)) == 0);
+  }
+
+ private:
+  std::span<const std::byte> from_;
+  std::size_t at_ = 0;
+};
+
+bool is_all_void(const GroundTile& tile) {
+  return !tile.is_void.empty() &&
+         std::find(tile.is_void.begin(), tile.is_void.end(), 0) == tile.is_void.end();
+}
+bool has_voids(const GroundTile& tile) {
+  return std::find(tile.is_void.begin(), tile.is_void.end(), 1) != tile.is_void.end();
+}
+
+/// Lengths of runs of samples that are not void and void, in turn; the first may be 0.
+std::vector<std::uint32_t> runs_of(const std::vector<std::uint8_t>& is_void) {
+  std::vector<std::uint32_t> runs{0};
+  bool now = false;
+  for (const std::uint8_t v : is_void) {
+    if ((v != 0) != now) {
+      runs.push_back(0);
+      now = !now;
+    }
+    ++runs.back();
+  }
+  return runs;
+}
+
+void put_voids(const GroundTile& tile, BitWriter& bits) {
+  const auto count = std::count_if(tile.is_void.begin(), tile.is_void.end(),
+                                   [](std::uint8_t v) { return v != 0; });
+  const auto put_kind = [&](Voids kind) { bits.put(static_cast<std::uint64_t>(kind), kVoidsBits); };
+  if (count == 0) return put_kind(Voids::kNone);
+  if (static_cast<std::size_t>(count) == tile.samples()) return put_kind(Voids::kAll);
+  const std::vector<std::uint32_t> runs = runs_of(tile.is_void);
+  // The last run is what is left, so it is not written.
+  if (runs.size() * kPlaceBits < tile.samples()) {
+    put_kind(Voids::kRuns);
+    bits.put(runs.size() - 1, kPlaceBits);
+    for (std::size_t i = 0; i + 1 < runs.size(); ++i) bits.put(runs[i], kPlaceBits);
+    return;
+  }
+  put_kind(Voids::kBits);
+  for (const std::uint8_t v : tile.is_void) bits.put(v != 0 ? 1 : 0, 1);
+}
+
+/// Heights of void samples are chosen such that what comes after them is well foretold: the gradient of
+/// their neighbours, but between these. One that none precedes has the first height.
+void fill_voids(const GroundTile& tile, std::vector<OrderedHeight>& heights) {
+  const std::size_t width = tile.width;
+  const auto first = std::find(tile.is_void.begin(), tile.is_void.end(), 0);
+  OrderedHeight last = heights[static_cast<std::size_t>(first - tile.is_void.begin())];
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const bool has_left = i % width != 0, has_up = i >= width;
+    if (tile.is_void[i] != 0) {
+      const OrderedHeight a = has_left ? heights[i - 1] : has_up ? heights[i - width] : last;
+      const OrderedHeight b = has_up ? heights[i - width] : a;
+      const std::int64_t c = has_left && has_up ? heights[i - width - 1] : a;
+      const auto [low, high] = std::minmax(a, b);
+      heights[i] = static_cast<OrderedHeight>(
+          std::clamp(std::int64_t{a} + std::int64_t{b} - c, std::int64_t{low}, std::int64_t{high}));
+    }
+    last = heights[i];
+  }
+}
+
+/// Differences from what the neighbours foretell, in the numbers' own arithmetic, which wraps.
+std::vector<std::uint32_t> residuals_of(const GroundTile& tile,
+                                        const std::vector<OrderedHeight>& heights) {
+  const std::size_t width = tile.width;
+  std::vector<std::uint32_t> residuals(heights.size());
+  for (std::size_t i = 1; i < heights.size(); ++i) {
+    const OrderedHeight left = i % width != 0 ? heights[i - 1] : 0;
+    const OrderedHeight up = i >= width ? heights[i - width] : 0;
+    const OrderedHeight corner = i % width != 0 && i >= width ? heights[i - width - 1] : 0;
+    residuals[i] = zigzag(heights[i] - (left + up - corner));
+  }
+  return residuals;
+}
+
+/// Calls work(first, columns, rows) for each block: the place of its first sample, and its size.
+template <class Work>
+bool for_each_block(std::uint32_t width, std::uint32_t height, const Work& work) {
+  for (std::uint32_t y = 0; y < height; y += kBlockHeight) {
+    for (std::uint32_t x = 0; x < width; x += kBlockWidth) {
+      if (!work(std::size_t{y} * width + x, std::min(kBlockWidth, width - x),
+                std::min(kBlockHeight, height - y))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+void put_heights(const GroundTile& tile, BitWriter& bits) {
+  std::vector<OrderedHeight> heights = tile.heights;
+  if (has_voids(tile)) fill_voids(tile, heights);
+  const std::vector<std::uint32_t> residuals = residuals_of(tile, heights);
+  bits.put(heights.front(), kHeightBits);
+  for_each_block(tile.width, tile.height,
+                 [&](std::size_t first, std::uint32_t columns, std::uint32_t rows) {
+                   std::uint32_t all = 0;
+                   for (std::uint32_t y = 0; y < rows; ++y) {
+                     for (std::uint32_t x = 0; x < columns; ++x) {
+                       all |= residuals[first + std::size_t{y} * tile.width + x];
+                     }
+                   }
+                   const auto bits_of_block = static_cast<unsigned>(std::bit_width(all));
+                   bits.put(bits_of_block, kWidthBits);
+                   for (std::uint32_t y = 0; y < rows; ++y) {
+                     for (std::uint32_t x = 0; x < columns; ++x) {
+                       bits.put(residuals[first + std::size_t{y} * tile.width + x], bits_of_block);
+                     }
+                   }
+                   return true;
+                 });
+}
+
+void put_lone(const GroundTile& tile, BitWriter& bits) {
+  bits.put(tile.lone.size(), kPlaceBits);
+  for (const GroundTile::Lone& lone : tile.lone) {
+    bits.put(lone.place, kPlaceBits);
+    bits.put(lone.height, kHeightBits);
+  }
+}
+
+constexpr const char* kCut = "a tile of heights ends too early";
+
+const char* take_runs(BitReader& bits, GroundTile& tile) {
+  if (!bits.has(kPlaceBits)) return kCut;
+  const std::uint32_t count = bits.take(kPlaceBits);
+  if (!bits.has(std::size_t{count} * kPlaceBits)) return kCut;
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t run = bits.take(kPlaceBits);
+    if (run > tile.samples() - at) return "a run of void samples leaves its tile of heights";
+    std::fill_n(tile.is_void.begin() + static_cast<std::ptrdiff_t>(at), run,
+                static_cast<std::uint8_t>(i % 2));
+    at += run;
+  }
+  std::fill(tile.is_void.begin() + static_cast<std::ptrdiff_t>(at), tile.is_void.end(),
+            static_cast<std::uint8_t>(count % 2));
+  return nullptr;
+}
+
+const char* take_voids(BitReader& bits, GroundTile& tile) {
+  if (!bits.has(kVoidsBits)) return kCut;
+  const auto kind = static_cast<Voids>(bits.take(kVoidsBits));
+  tile.is_void.clear();
+  if (kind == Voids::kNone) return nullptr;
+  tile.is_void.assign(tile.samples(), 1);
+  if (kind == Voids::kAll) return nullptr;
+  if (kind == Voids::kRuns) return take_runs(bits, tile);
+  if (!bits.has(tile.samples())) return kCut;
+  for (std::uint8_t& v : tile.is_void) v = static_cast<std::uint8_t>(bits.take(1));
+  return nullptr;
+}
+
+/// Residuals to heights: a sum along each row, and down each column.
+void sum_up(GroundTile& tile) noexcept {
+  const std::size_t width = tile.width;
+  for (std::size_t row = 0; row < tile.height; ++row) {
+    OrderedHeight* const here = tile.heights.data() + row * width;
+    OrderedHeight along = 0;
+    for (std::size_t x = 0; x < width; ++x) {
+      along += here[x];
+      here[x] = along + (row > 0 ? here[x - width] : 0);
+    }
+  }
+}
+
+const char* take_heights(BitReader& bits, GroundTile& tile) {
+  if (!bits.has(kHeightBits)) return kCut;
+  const OrderedHeight first_height = bits.take(kHeightBits);
+  tile.heights.resize(tile.samples());
+  const bool is_whole = for_each_block(
+      tile.width, tile.height, [&](std::size_t first, std::uint32_t columns, std::uint32_t rows) {
+        if (!bits.has(kWidthBits)) return false;
+        const unsigned width = bits.take(kWidthBits);
+        if (width > kHeightBits || !bits.has(std::size_t{width} * columns * rows)) return false;
+        for (std::uint32_t y = 0; y < rows; ++y) {
+          OrderedHeight* const here = tile.heights.data() + first + std::size_t{y} * tile.width;
+          for (std::uint32_t x = 0; x < columns; ++x) here[x] = unzigzag(bits.take(width));
+        }
+        return true;
+      });
+  if (!is_whole) return "a tile of heights ends too early, or has numbers of more than 32 bits";
+  tile.heights.front() = first_height;
+  sum_up(tile);
+  return nullptr;
+}
+
+const char* take_lone(BitReader& bits, GroundTile& tile) {
+  tile.lone.clear();
+  if (!bits.has(kPlaceBits)) return kCut;
+  const std::uint32_t count = bits.take(kPlaceBits);
+  if (!bits.has(std::size_t{count} * (kPlaceBits + kHeightBits))) return kCut;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto place = static_cast<std::uint16_t>(bits.take(kPlaceBits));
+    const bool is_next = tile.lone.empty() || place > tile.lone.back().place;
+    if (!is_next || place >= tile.samples() || tile.is_void.empty() || tile.is_void[place] == 0) {
+      return "a lone sample of a tile of heights is not void, or not in order";
+    }
+    tile.lone.push_back({place, bits.take(kHeightBits)});
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void append_ground_tile(const GroundTile& tile, std::vector<std::byte>& to) {
+  BitWriter bits(to);
+  put_voids(tile, bits);
+  if (!is_all_void(tile)) put_heights(tile, bits);
+  if (has_voids(tile)) put_lone(tile, bits);
+  bits.end();
+}
+
+const char* read_ground_tile(std::span<const std::byte> from, std::uint32_t width,
+                             std::uint32_t height, GroundTile& tile) {
+  tile.width = width;
+  tile.height = height;
+  BitReader bits(from);
+  if (const char* const fault = take_voids(bits, tile)) return fault;
+  if (is_all_void(tile)) {
+    tile.heights.assign(tile.samples(), 0);
+  } else if (const char* const fault = take_heights(bits, tile)) {
+    return fault;
+  }
+  tile.lone.clear();
+  if (!tile.is_void.empty()) {
+    if (const char* const fault = take_lone(bits, tile)) return fault;
+  }
+  return bits.is_at_end() ? nullptr : "a tile of heights is followed by bytes that are not its own";
+}
+
+}  // namespace ptin
