@@ -33,7 +33,7 @@ void build_raster(Job& job) {
   std::ignore = job.begin({}, nullptr);
   const RasterSource source = RasterSource::open(job.inputs, job.source_options(), job.run_tasks());
   job.report.source_samples = source.valid_samples();
-  job.report.warnings = source.warnings();
+  job.report.warnings.join(source.warnings());
   job.report.void_samples = source.void_samples();
   job.report.height_rounding = source.frame().height_rounding;
   job.report.vertices =
@@ -63,6 +63,8 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
   if (resources.unfinished == Unfinished::kRefuse && !resources.dry_run) {
     Workspace::refuse_unfinished(output);  // rasters are read before their plan is known
   }
+  // Nothing may fail any more when the output is there.
+  warn_of_repeated(inputs, job.report.warnings);
   switch (kind) {
     case InputKind::kRaster:
       build_raster(job);
@@ -74,7 +76,6 @@ BuildReport build_of_kind(const std::vector<std::string>& inputs, const std::str
       build_tin(job);
       break;
   }
-  warn_of_repeated(inputs, job.report.warnings);
   job.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return std::move(job.report);

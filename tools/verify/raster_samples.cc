@@ -81,9 +81,11 @@ double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std
 /// on it.
 void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
-  // A geotransform that says nothing counts as none; it is what GDAL gives for none.
+  // A geotransform that says nothing counts as none; it is what GDAL gives for none, but for a VRT, in
+  // which one is written or none.
+  const bool is_vrt = EQUAL(file.data->GetDriverName(), "VRT");
   if (file.data->GetGeoTransform(t.data()) != CE_None ||
-      t == std::array<double, 6>{0, 1, 0, 0, 0, 1})
+      (t == std::array<double, 6>{0, 1, 0, 0, 0, 1} && !is_vrt))
     t = {-0.5, 1, 0, file.rows - 0.5, 0, -1};
   file.x_step = t[1] < 0 ? -1 : 1;
   file.y_step = t[5] < 0 ? -1 : 1;

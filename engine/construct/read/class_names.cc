@@ -25,31 +25,31 @@ struct ClassName {
 };
 
 /// Those of the specification of LAS 1.4, revision 15.
-constexpr std::array kNames{ClassName{"never-classified", 0, 0},
-                            ClassName{"unclassified", 1, 1},
-                            ClassName{"ground", 2, 2},
-                            ClassName{"vegetation", 3, 5},
-                            ClassName{"low-vegetation", 3, 3},
-                            ClassName{"medium-vegetation", 4, 4},
-                            ClassName{"high-vegetation", 5, 5},
-                            ClassName{"building", 6, 6},
-                            ClassName{"noise", 7, 7, 18},
-                            ClassName{"low-noise", 7, 7},
-                            ClassName{"key-point", 8, 8},
-                            ClassName{"water", 9, 9},
-                            ClassName{"rail", 10, 10},
-                            ClassName{"road", 11, 11},
-                            ClassName{"overlap", 12, 12},
-                            ClassName{"wire-guard", 13, 13},
-                            ClassName{"wire-conductor", 14, 14},
-                            ClassName{"tower", 15, 15},
-                            ClassName{"wire-connector", 16, 16},
-                            ClassName{"bridge", 17, 17},
-                            ClassName{"high-noise", 18, 18},
-                            ClassName{"overhead-structure", 19, 19},
-                            ClassName{"ignored-ground", 20, 20},
-                            ClassName{"snow", 21, 21},
-                            ClassName{"temporal-exclusion", 22, 22}};
+constexpr std::array kClassNames{ClassName{"never-classified", 0, 0},
+                                 ClassName{"unclassified", 1, 1},
+                                 ClassName{"ground", 2, 2},
+                                 ClassName{"vegetation", 3, 5},
+                                 ClassName{"low-vegetation", 3, 3},
+                                 ClassName{"medium-vegetation", 4, 4},
+                                 ClassName{"high-vegetation", 5, 5},
+                                 ClassName{"building", 6, 6},
+                                 ClassName{"noise", 7, 7, 18},
+                                 ClassName{"low-noise", 7, 7},
+                                 ClassName{"key-point", 8, 8},
+                                 ClassName{"water", 9, 9},
+                                 ClassName{"rail", 10, 10},
+                                 ClassName{"road", 11, 11},
+                                 ClassName{"overlap", 12, 12},
+                                 ClassName{"wire-guard", 13, 13},
+                                 ClassName{"wire-conductor", 14, 14},
+                                 ClassName{"tower", 15, 15},
+                                 ClassName{"wire-connector", 16, 16},
+                                 ClassName{"bridge", 17, 17},
+                                 ClassName{"high-noise", 18, 18},
+                                 ClassName{"overhead-structure", 19, 19},
+                                 ClassName{"ignored-ground", 20, 20},
+                                 ClassName{"snow", 21, 21},
+                                 ClassName{"temporal-exclusion", 22, 22}};
 
 std::vector<int> range_of(int first, int last) {
   std::vector<int> all;
@@ -70,7 +70,7 @@ std::string plain_name(std::string_view item) {
 
 [[noreturn]] void refuse_item(std::string_view item, const std::string& name) {
   std::string names;
-  for (const ClassName& n : kNames) {
+  for (const ClassName& n : kClassNames) {
     names += (names.empty() ? "" : ", ") + std::string(n.name);
   }
   const bool is_name = !name.empty() && std::isalpha(static_cast<unsigned char>(name[0])) != 0;
@@ -83,7 +83,7 @@ std::string plain_name(std::string_view item) {
 /// The classes of one item.
 std::vector<int> classes_of_item(std::string_view item) {
   const std::string name = plain_name(item);
-  for (const ClassName& n : kNames) {
+  for (const ClassName& n : kClassNames) {
     if (name == n.name) {
       std::vector<int> classes = range_of(n.first, n.last);
       if (n.other >= 0) {
