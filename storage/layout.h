@@ -27,7 +27,7 @@ inline constexpr std::uint16_t kMajorVersion = 2;
 /// 0, or 1 where there is a directory, or 2 where there are the heights of a raster.
 inline constexpr std::uint16_t kMinorVersion = 2;
 inline constexpr std::uint16_t kMinorVersionOfDirectory = 1;
-inline constexpr std::uint16_t kMinorVersionOfGround = 2;
+inline constexpr std::uint16_t kMinorVersionOfFloor = 2;
 
 inline constexpr std::uint32_t kMinPageBytes = 4096;
 inline constexpr std::uint32_t kMaxPageBytes = 65536;
@@ -74,8 +74,8 @@ enum class SectionKind : std::uint32_t {
   kPages = 6,
   kDirectory = 7,       ///< Both or none.
   kDirectoryNodes = 8,  ///< Kept between the index and the pages.
-  kGroundNodes = 9,     ///< Both or none, behind the pages.
-  kGroundPages = 10,
+  kFloorNodes = 9,      ///< Both or none, behind the pages.
+  kFloorPages = 10,
 };
 
 /// One line of the section table, which follows the header.
@@ -160,47 +160,47 @@ struct DirectoryEntry {
 static_assert(sizeof(DirectoryEntry) == 16 && offsetof(DirectoryEntry, error_max) == 12);
 inline constexpr std::size_t kDirectoryEntryBytes = 14;
 
-inline constexpr std::uint32_t kGroundFanOut = 168;
-inline constexpr std::size_t kGroundPageBytes = 4096;
+inline constexpr std::uint32_t kFloorFanOut = 168;
+inline constexpr std::size_t kFloorPageBytes = 4096;
 
 /// Describes a page of heights (in a leaf) or a node (above).
-struct GroundEntry {
+struct FloorEntry {
   std::uint64_t first;            //  0  key of its first tile
   std::uint32_t least, greatest;  //  8  ordered heights of its samples; least > greatest: all void
   std::uint64_t checksum;         // 16
 };
-static_assert(sizeof(GroundEntry) == 24 && offsetof(GroundEntry, checksum) == 16);
+static_assert(sizeof(FloorEntry) == 24 && offsetof(FloorEntry, checksum) == 16);
 
 /// A node above the pages of heights. What is told of the raster stands in the root; elsewhere it is 0.
-struct GroundNode {
-  std::uint8_t side_log2, coding;                //  0
-  std::uint16_t flags;                           //  2
-  std::uint32_t entries;                         //  4  in use; the others are zero
-  std::uint64_t pages;                           //  8  of the section
-  std::uint32_t width, height;                   // 16  samples
-  std::uint64_t step;                            // 24  double
-  std::uint64_t nodata;                          // 32  double
-  std::uint32_t source_type;                     // 40
-  std::array<std::uint8_t, 20> reserved;         // 44  zero
-  std::array<GroundEntry, kGroundFanOut> entry;  // 64
+struct FloorNode {
+  std::uint8_t side_log2, coding;              //  0
+  std::uint16_t flags;                         //  2
+  std::uint32_t entries;                       //  4  in use; the others are zero
+  std::uint64_t pages;                         //  8  of the section
+  std::uint32_t width, height;                 // 16  samples
+  std::uint64_t step;                          // 24  double
+  std::uint64_t nodata;                        // 32  double
+  std::uint32_t source_type;                   // 40
+  std::array<std::uint8_t, 20> reserved;       // 44  zero
+  std::array<FloorEntry, kFloorFanOut> entry;  // 64
 };
-static_assert(sizeof(GroundNode) == kNodeBytes && offsetof(GroundNode, entry) == 64);
+static_assert(sizeof(FloorNode) == kNodeBytes && offsetof(FloorNode, entry) == 64);
 
 /// A page of heights begins with this. Then come the entries of its tiles, then their bytes.
-struct GroundPageHead {
+struct FloorPageHead {
   std::uint16_t tiles, bytes;  //  0  bytes in use, from the beginning of the page
   std::uint32_t least, span;   //  4  of the heights of its samples
   std::uint32_t reserved;      // 12  zero
 };
-static_assert(sizeof(GroundPageHead) == 16);
+static_assert(sizeof(FloorPageHead) == 16);
 
-struct GroundTileEntry {
+struct FloorTileEntry {
   std::uint16_t key;  //  0  beyond that of the page's first tile
   std::uint16_t end;  //  2  of its bytes, from the beginning of the page
   std::uint16_t least,
       greatest;  //  4  in 65535ths of the span, outward; least > greatest: all void
 };
-static_assert(sizeof(GroundTileEntry) == 8);
+static_assert(sizeof(FloorTileEntry) == 8);
 
 /// What a page begins with: base and width of each column of numbers (storage/page_columns.h).
 struct PageHeader {
@@ -232,8 +232,8 @@ static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPla
               kIsPlainBytes<T0Triangle> && kIsPlainBytes<ErrorBinEntry> &&
               kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<PageHeader> &&
               kIsPlainBytes<DirectoryHead> && kIsPlainBytes<DirectoryEntry> &&
-              kIsPlainBytes<GroundNode> && kIsPlainBytes<GroundPageHead> &&
-              kIsPlainBytes<GroundTileEntry>);
+              kIsPlainBytes<FloorNode> && kIsPlainBytes<FloorPageHead> &&
+              kIsPlainBytes<FloorTileEntry>);
 
 /// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
 /// negative number, -0 too, has larger bits, so one unsigned comparison finds a valid value.

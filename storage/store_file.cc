@@ -165,14 +165,14 @@ const RecordIndex& StoreFile::index() const noexcept { return *index_; }
 const PackedRTree& StoreFile::star_index() const noexcept { return *index_; }
 const PageStore& StoreFile::pages() const noexcept { return *pages_; }
 const PointDirectory* StoreFile::directory() const noexcept { return directory_.get(); }
-const Ground* StoreFile::ground() const {
-  if (!front_->ground) {
+const Floor* StoreFile::floor() const {
+  if (!front_->floor) {
     return nullptr;
   }
-  std::call_once(ground_once_, [this] {
-    ground_ = std::make_unique<const Ground>(*file_, *front_->ground, front_->facts.heights);
+  std::call_once(floor_once_, [this] {
+    floor_ = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts.heights);
   });
-  return ground_.get();
+  return floor_.get();
 }
 
 StoreFile::PageInfo StoreFile::page_info(PageId id) const {

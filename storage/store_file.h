@@ -27,7 +27,7 @@
 namespace ptin {
 
 class DescribedPageStore;
-class Ground;
+class Floor;
 class IndexNodes;
 class MappedFile;
 class PackedRTree;
@@ -106,7 +106,7 @@ class StoreFile {
   /// The heights of the raster that the terrain is of; null where the file has none. They are those of
   /// the full TIN's vertices, which are the raster's samples, and its triangles follow from them.
   /// @throws Error corruption, io_error  Cost: the first time one read.
-  [[nodiscard]] const Ground* ground() const;
+  [[nodiscard]] const Floor* floor() const;
 
   /// What the descriptor of a page says.
   struct PageInfo {
@@ -159,8 +159,8 @@ class StoreFile {
   std::unique_ptr<DescribedPageStore> pages_;
   std::unique_ptr<PackedRTree> index_;
   std::unique_ptr<PointDirectory> directory_;
-  mutable std::once_flag ground_once_;
-  mutable std::unique_ptr<const Ground> ground_;  ///< Made when it is first asked for.
+  mutable std::once_flag floor_once_;
+  mutable std::unique_ptr<const Floor> floor_;  ///< Made when it is first asked for.
 };
 
 }  // namespace ptin

@@ -267,9 +267,9 @@ std::optional<DirectoryPlace> place_of_directory(const StoreFront& front, const 
 }
 
 /// Where the heights of a raster lie. Nothing of them is read at the opening.
-std::optional<GroundPlace> place_of_ground(const StoreFront& front, const std::string& path) {
-  const SectionEntry* const nodes = find_any(front.sections, SectionKind::kGroundNodes, path);
-  const SectionEntry* const pages = find_any(front.sections, SectionKind::kGroundPages, path);
+std::optional<FloorPlace> place_of_floor(const StoreFront& front, const std::string& path) {
+  const SectionEntry* const nodes = find_any(front.sections, SectionKind::kFloorNodes, path);
+  const SectionEntry* const pages = find_any(front.sections, SectionKind::kFloorPages, path);
   require((nodes == nullptr) == (pages == nullptr), path,
           "of the heights and the nodes above them one is missing");
   if (nodes == nullptr) {
@@ -277,11 +277,11 @@ std::optional<GroundPlace> place_of_ground(const StoreFront& front, const std::s
   }
   require(nodes->bytes > 0 && nodes->bytes % layout::kNodeBytes == 0, path,
           "the nodes above the heights are no whole number of nodes long");
-  require(pages->bytes > 0 && pages->bytes % layout::kGroundPageBytes == 0, path,
+  require(pages->bytes > 0 && pages->bytes % layout::kFloorPageBytes == 0, path,
           "the heights are no whole number of pages long");
   require(pages->checksum == 0, path,
           "the checksum of the section of heights should be 0: each page has its own");
-  return GroundPlace{{nodes->offset, nodes->bytes}, {pages->offset, pages->bytes}, nodes->checksum};
+  return FloorPlace{{nodes->offset, nodes->bytes}, {pages->offset, pages->bytes}, nodes->checksum};
 }
 
 }  // namespace
@@ -304,9 +304,9 @@ const char* name_of(SectionKind kind) noexcept {
       return "directory";
     case SectionKind::kDirectoryNodes:
       return "directory nodes";
-    case SectionKind::kGroundNodes:
+    case SectionKind::kFloorNodes:
       return "height nodes";
-    case SectionKind::kGroundPages:
+    case SectionKind::kFloorPages:
       return "heights";
   }
   return "unknown";
@@ -335,7 +335,7 @@ StoreFront read_front(const ReadableFile& file) {
   front.sections = read_table(front.header, file);
   place_index_and_pages(front, file.path());
   front.directory = place_of_directory(front, file.path());
-  front.ground = place_of_ground(front, file.path());
+  front.floor = place_of_floor(front, file.path());
   announce_front(front, file);
   const std::vector<char> metadata =
       read_section<char>(front.sections, SectionKind::kMetadata, file);

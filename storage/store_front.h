@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "storage/file/readable_file.h"
-#include "storage/ground.h"
+#include "storage/floor.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"
@@ -32,7 +32,7 @@ struct StoreFront {
   std::uint64_t index_offset = 0;
   std::uint64_t root_checksum = 0;
   std::optional<DirectoryPlace> directory;
-  std::optional<GroundPlace> ground;
+  std::optional<FloorPlace> floor;
 };
 
 /// Reads the front of a file and checks everything that storage/FORMAT.md lists under "At opening".

@@ -276,28 +276,28 @@ PageSlots StoreWriter::move_pages_behind(std::uint64_t front_bytes) {
   return {pages, front_pages < pages ? front_pages : 0, front_bytes, options_.page_bytes};
 }
 
-void StoreWriter::add_ground(const GroundFacts& facts,
-                             const std::function<bool(GroundWriter&)>& fill) {
+void StoreWriter::add_floor(const FloorFacts& facts,
+                            const std::function<bool(FloorWriter&)>& fill) {
   PTIN_CHECK(!published_);
-  ground_nodes_.clear();
-  ground_bytes_ = 0;
-  ground_pages_ = std::make_unique<ScratchFile>(files_, folder_, stem_ + ".heights", true);
-  GroundWriter ground([&](std::span<const std::byte> page) {
-    ground_pages_->write_at(page, ground_bytes_);
-    ground_bytes_ += page.size();
+  floor_nodes_.clear();
+  floor_bytes_ = 0;
+  floor_pages_ = std::make_unique<ScratchFile>(files_, folder_, stem_ + ".heights", true);
+  FloorWriter floor([&](std::span<const std::byte> page) {
+    floor_pages_->write_at(page, floor_bytes_);
+    floor_bytes_ += page.size();
   });
-  if (!fill(ground)) {
+  if (!fill(floor)) {
     return;
   }
-  ground.finish();
-  ground_nodes_ = ground.nodes(facts);
+  floor.finish();
+  floor_nodes_ = floor.nodes(facts);
 }
 
 /// Writes the heights behind the pages of records.
-void StoreWriter::write_ground(std::uint64_t nodes_offset) {
-  const auto nodes = std::as_bytes(std::span(ground_nodes_));
+void StoreWriter::write_floor(std::uint64_t nodes_offset) {
+  const auto nodes = std::as_bytes(std::span(floor_nodes_));
   file_.write_at(nodes, nodes_offset);
-  file_.copy_from(*ground_pages_, 0, ground_bytes_, nodes_offset + nodes.size());
+  file_.copy_from(*floor_pages_, 0, floor_bytes_, nodes_offset + nodes.size());
 }
 
 void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
@@ -317,8 +317,8 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
     directory = DirectoryWriter::plan(facts.bounds, index_->pages(), options_.page_bytes,
                                       options_.directory, walk);
   }
-  const bool has_ground = !ground_nodes_.empty();
-  Front front(6 + (directory ? 2 : 0) + (has_ground ? 2 : 0));
+  const bool has_floor = !floor_nodes_.empty();
+  Front front(6 + (directory ? 2 : 0) + (has_floor ? 2 : 0));
   const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
   const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
   const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
@@ -341,14 +341,14 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   const std::uint64_t pages_end =
       front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
   header.file_bytes = pages_end;
-  if (has_ground) {
-    const std::uint64_t ground_offset =
-        front.add_outside(layout::SectionKind::kGroundNodes, pages_end,
-                          ground_nodes_.size() * sizeof(layout::GroundNode));
-    front.section(layout::SectionKind::kGroundNodes).checksum =
-        checksum_of_object(ground_nodes_.front());
+  if (has_floor) {
+    const std::uint64_t floor_offset =
+        front.add_outside(layout::SectionKind::kFloorNodes, pages_end,
+                          floor_nodes_.size() * sizeof(layout::FloorNode));
+    front.section(layout::SectionKind::kFloorNodes).checksum =
+        checksum_of_object(floor_nodes_.front());
     header.file_bytes =
-        front.add_outside(layout::SectionKind::kGroundPages, ground_offset, ground_bytes_);
+        front.add_outside(layout::SectionKind::kFloorPages, floor_offset, floor_bytes_);
   }
 
   const PageSlots slots = move_pages_behind(front_bytes);
@@ -360,11 +360,11 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   front.section(layout::SectionKind::kIndex).checksum = index_->write_to(file_, index_offset);
   const std::vector<std::byte> gap(front_bytes - nodes_end);
   file_.write_at(gap, nodes_end);
-  if (has_ground) write_ground(pages_end);
+  if (has_floor) write_floor(pages_end);
 
   header.magic = layout::kMagic;
   header.major_version = layout::kMajorVersion;
-  header.minor_version = has_ground  ? layout::kMinorVersionOfGround
+  header.minor_version = has_floor   ? layout::kMinorVersionOfFloor
                          : directory ? layout::kMinorVersionOfDirectory
                                      : 0;
   header.header_bytes = sizeof header;

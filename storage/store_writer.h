@@ -13,7 +13,7 @@
 
 #include "storage/error_table.h"
 #include "storage/file/file_layer.h"
-#include "storage/ground_writer.h"
+#include "storage/floor_writer.h"
 #include "storage/index_writer.h"
 #include "storage/packed_segment.h"
 #include "storage/page_journal.h"
@@ -112,7 +112,7 @@ class StoreWriter {
   /// @param fill  Adds all tiles, in the order of their keys; where it returns false there are no
   ///              heights.
   /// @throws Error resource_exhausted (disk full), io_error; what `fill` throws
-  void add_ground(const GroundFacts& facts, const std::function<bool(GroundWriter&)>& fill);
+  void add_floor(const FloorFacts& facts, const std::function<bool(FloorWriter&)>& fill);
 
   /// Writes T0, metadata, index and tables, syncs, renames onto the target, syncs the folder. To be
   /// called once, at the end. Cost besides: moves as many bytes of pages as the front of the file
@@ -131,7 +131,7 @@ class StoreWriter {
   void restore_moved_pages();
   void take_back(const layout::NodeEntry& entry, std::vector<std::byte>& page);
   PageSlots move_pages_behind(std::uint64_t front_bytes);
-  void write_ground(std::uint64_t nodes_offset);
+  void write_floor(std::uint64_t nodes_offset);
 
   std::string path_;
   StoreWriterOptions options_;
@@ -142,9 +142,9 @@ class StoreWriter {
   std::optional<HeightEncoding> heights_;
   std::optional<IndexWriter> index_;
   ErrorTable errors_;
-  std::vector<layout::GroundNode> ground_nodes_;  ///< Empty: there are no heights of a raster.
-  std::unique_ptr<ScratchFile> ground_pages_;
-  std::uint64_t ground_bytes_ = 0;   ///< Of the pages.
+  std::vector<layout::FloorNode> floor_nodes_;  ///< Empty: there are no heights of a raster.
+  std::unique_ptr<ScratchFile> floor_pages_;
+  std::uint64_t floor_bytes_ = 0;    ///< Of the pages.
   std::uint64_t written_bytes_ = 0;  ///< Pages lie at the start of the file until publish().
   std::uint16_t max_rank_ = 0;
   bool published_ = false;

@@ -349,8 +349,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   job.report.lone_samples = built.lone_samples;
   require_unchanged(job);
   job.tell(StageProgress{"writing", 0, 1});
-  if (source.add_ground) {
-    store.add_ground([&](StoreWriter& writer) { source.add_ground(writer, job.resources.stop); });
+  if (source.add_floor) {
+    store.add_floor([&](StoreWriter& writer) { source.add_floor(writer, job.resources.stop); });
   }
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});

@@ -189,7 +189,7 @@ void StoreOutput::resume(const nlohmann::json& position) {
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
 
-void StoreOutput::add_ground(const std::function<void(StoreWriter&)>& add) {
+void StoreOutput::add_floor(const std::function<void(StoreWriter&)>& add) {
   if (base_error_ == 0.0) {
     add(*writer_);
   }

@@ -58,8 +58,8 @@ class StoreOutput final : public SegmentOutput {
   void resume(const nlohmann::json& position) override;
 
   /// Has the samples of a raster added, where each of them is a vertex of the file with its own height.
-  /// @throws Error as StoreWriter::add_ground
-  void add_ground(const std::function<void(StoreWriter&)>& add);
+  /// @throws Error as StoreWriter::add_floor
+  void add_floor(const std::function<void(StoreWriter&)>& add);
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
   /// @param t0_deaths  One for each of t0.triangles, as deaths_of().

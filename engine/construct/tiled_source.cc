@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/construct/collapse/first_pass.h"
-#include "engine/construct/raster/raster_ground.h"
+#include "engine/construct/raster/raster_floor.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/construct/tasks/task.h"
 #include "engine/construct/tin/tin_tile.h"
@@ -25,11 +25,11 @@ TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
       return start_raster_tile(*own, window, units, thins_sides);
     };
   };
-  const auto add_ground = [&source](StoreWriter& writer, const std::stop_token& stop) {
-    add_raster_ground(source, writer, stop);
+  const auto add_floor = [&source](StoreWriter& writer, const std::stop_token& stop) {
+    add_raster_floor(source, writer, stop);
   };
   return {source.frame(), units, TileTree(source.width(), source.height(), side), make_starter,
-          add_ground};
+          add_floor};
 }
 
 TiledSource tiled(const PointBuckets& points, const BuildOptions& options,

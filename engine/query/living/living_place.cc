@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/query/living/ground_cells.h"
+#include "engine/query/living/floor_cells.h"
 #include "storage/packed_rtree.h"
 #include "storage/page_columns.h"
 #include "storage/point_directory.h"
@@ -70,9 +70,9 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
   const bool is_full = stars_.detail().is_by_error() && stars_.detail().tolerance() < 0;
-  const Ground* const ground = is_full ? terrain_.ground() : nullptr;
-  if (ground != nullptr) {
-    return read_ground(*ground, place, context, visitor);
+  const Floor* const floor = is_full ? terrain_.floor() : nullptr;
+  if (floor != nullptr) {
+    return read_floor(*floor, place, context, visitor);
   }
   stars_.clear();
   const PlaceStars across_steps(place, heights_);
@@ -103,23 +103,23 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
 }
 
 /// The full TIN of a raster follows from its heights, of which far fewer pages are read.
-bool LivingReader::read_ground(const Ground& ground, const LivingPlace& place,
-                               QueryContext& context, LivingVisitor& visitor) const {
+bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, QueryContext& context,
+                              LivingVisitor& visitor) const {
   const PlaceStars across_steps(place, heights_);
   const StarPredicate* const also = place.steps.empty() ? place.stars : &across_steps;
-  GroundWish wish;
+  FloorWish wish;
   wish.box = place.box;
   wish.may_hold = [&](const GridBox& box, const Interval& codes) {
     const bool asks_heights = place.heights != kAllHeights;
     return (!asks_heights || (!is_empty(codes) && meets(codes, place.heights))) &&
            (also == nullptr || also->may_hold({box, codes, kInfinity, -kInfinity}));
   };
-  const std::uint64_t samples = ground_samples(ground.facts().shape, place.box);
+  const std::uint64_t samples = floor_samples(floor.facts().shape, place.box);
   if (!visitor.expect(samples)) {
     return false;
   }
-  return visit_ground(
-      ground, heights_, wish,
+  return visit_floor(
+      floor, heights_, wish,
       [&](std::size_t most) {
         context.check_stop();
         return visitor.begin(most);

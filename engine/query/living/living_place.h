@@ -51,8 +51,8 @@ class LivingReader {
   bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);
 
  private:
-  bool read_ground(const Ground& ground, const LivingPlace& place, QueryContext& context,
-                   LivingVisitor& visitor) const;
+  bool read_floor(const Floor& floor, const LivingPlace& place, QueryContext& context,
+                  LivingVisitor& visitor) const;
   [[nodiscard]] bool asks_directory() const;
   template <class Page>
   bool take_all(std::span<const Page> pages, std::uint64_t records, const LivingPlace& place,

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/query/living/ground_cells.h"
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/level_stars.h"
 #include "engine/query/walk/spot_set.h"
 #include "storage/packed_rtree.h"
@@ -299,9 +299,9 @@ void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> fo
 }
 
 /// The triangles at spots of the full TIN of a raster.
-void find_on_ground(const StoreFile& store, const Ground& ground, std::span<const Spot> spots,
-                    std::span<TriangleAt> found, QueryContext& context) {
-  GroundAtSpots triangles(ground, store.facts().heights);
+void find_on_floor(const StoreFile& store, const Floor& floor, std::span<const Spot> spots,
+                   std::span<TriangleAt> found, QueryContext& context) {
+  FloorAtSpots triangles(floor, store.facts().heights);
   for (std::size_t i = 0; i < spots.size(); ++i) {
     context.check_stop();
     triangles.visit(
@@ -315,8 +315,8 @@ void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::spa
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
   const bool is_full = detail.is_by_error() && detail.tolerance() < 0;
-  if (const Ground* const ground = is_full ? terrain.ground() : nullptr) {
-    find_on_ground(terrain.store(), *ground, spots, found, context);
+  if (const Floor* const floor = is_full ? terrain.floor() : nullptr) {
+    find_on_floor(terrain.store(), *floor, spots, found, context);
   } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);
   }

@@ -16,7 +16,7 @@ namespace ptin {
 /// A store, its T0 as a mesh, and the index that searches use. T0, the map, and those upper levels
 /// of the index that were touched stay in memory; everything else is paged. A copy shares all of
 /// them.
-/// Threads: all functions but use_index() and use_ground() are const and may be called at once.
+/// Threads: all functions but use_index() and use_floor() are const and may be called at once.
 class OpenedTerrain {
  public:
   /// @throws Error as StoreFile::open; corruption when the stored T0 is not a valid TIN
@@ -44,17 +44,17 @@ class OpenedTerrain {
 
   /// The heights of a raster, from which the full TIN follows; null: the file has none, or stars are to
   /// answer.
-  /// @throws Error as StoreFile::ground()
-  [[nodiscard]] const Ground* ground() const { return uses_ground_ ? store_->ground() : nullptr; }
+  /// @throws Error as StoreFile::floor()
+  [[nodiscard]] const Floor* floor() const { return uses_floor_ ? store_->floor() : nullptr; }
   /// Has the full TIN answered from the heights of a raster, where the file has them, or from stars as a
   /// level is, for tests and `--by stars`; the answers are the same. Not thread-safe.
-  void use_ground(bool uses) noexcept { uses_ground_ = uses; }
+  void use_floor(bool uses) noexcept { uses_floor_ = uses; }
 
  private:
   std::shared_ptr<const StoreFile> store_;
   std::shared_ptr<const Tin> t0_;             ///< T0 with neighbours; a query starts from a copy.
   std::shared_ptr<const RecordIndex> index_;  ///< Null: the store's own.
-  bool uses_ground_ = true;
+  bool uses_floor_ = true;
 };
 
 }  // namespace ptin

@@ -13,7 +13,7 @@
 namespace ptin {
 
 /// Tiles of a raster: 2^side_log2 cells along each side, fewer at its end.
-struct GroundShape {
+struct FloorShape {
   std::uint32_t side_log2 = 5;
   std::uint32_t width = 0, height = 0;  ///< Samples of the raster.
 
@@ -42,12 +42,12 @@ struct GroundShape {
 };
 
 /// The nodes above some pages: the root first, then level by level, the leaves last.
-class GroundTree {
+class FloorTree {
  public:
-  explicit GroundTree(std::uint64_t pages) : pages_(pages) {
+  explicit FloorTree(std::uint64_t pages) : pages_(pages) {
     std::uint64_t below = pages;
     do {
-      below = (below + layout::kGroundFanOut - 1) / layout::kGroundFanOut;
+      below = (below + layout::kFloorFanOut - 1) / layout::kFloorFanOut;
       nodes_.insert(nodes_.begin(), below);
     } while (below > 1);
   }

@@ -11,9 +11,8 @@
 namespace ptin {
 
 /// Gives all samples to the writer. The bytes depend on the samples alone.
-/// @throws Error cancelled; as RasterSource::read() and StoreWriter::add_ground()
+/// @throws Error cancelled; as RasterSource::read() and StoreWriter::add_floor()
 /// Cost: one reading of the source, and 10 ns a sample. Memory: 6 MiB.
-void add_raster_ground(const RasterSource& source, StoreWriter& writer,
-                       const std::stop_token& stop);
+void add_raster_floor(const RasterSource& source, StoreWriter& writer, const std::stop_token& stop);
 
 }  // namespace ptin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/query/living/ground_cells.h"
+#include "engine/query/living/floor_cells.h"
 
 #include <algorithm>
 #include <array>
@@ -18,12 +18,12 @@ struct Cells {
 /// Cells of one tile, as triangles.
 class CellsOfTile {
  public:
-  CellsOfTile(const Ground& ground, const HeightEncoding& heights) noexcept
-      : shape_(ground.facts().shape), numbers_(ground.numbers()), heights_(heights) {}
+  CellsOfTile(const Floor& floor, const HeightEncoding& heights) noexcept
+      : shape_(floor.facts().shape), numbers_(floor.numbers()), heights_(heights) {}
 
   /// Takes the triangles of those cells that the tile has.
   template <class Take>
-  void visit(const Ground::TileBounds& at, const GroundTile& tile, const Cells& cells,
+  void visit(const Floor::TileBounds& at, const FloorTile& tile, const Cells& cells,
              const Take& take) const {
     const std::int64_t left = shape_.first_of(at.column), low = shape_.first_of(at.row);
     const std::int64_t last_x = std::min<std::int64_t>(cells.max_x, left + tile.width - 2);
@@ -38,7 +38,7 @@ class CellsOfTile {
   }
 
  private:
-  [[nodiscard]] LivingTriangle::Corner corner(const GroundTile& tile, GridPoint first,
+  [[nodiscard]] LivingTriangle::Corner corner(const FloorTile& tile, GridPoint first,
                                               std::int32_t x, std::int32_t y) const {
     const std::size_t i = static_cast<std::size_t>(y) * tile.width + static_cast<std::size_t>(x);
     const bool has_height = tile.is_void.empty() || tile.is_void[i] == 0;
@@ -47,7 +47,7 @@ class CellsOfTile {
   }
 
   template <class Take>
-  void visit_cell(const GroundTile& tile, GridPoint first, std::int32_t x, std::int32_t y,
+  void visit_cell(const FloorTile& tile, GridPoint first, std::int32_t x, std::int32_t y,
                   const Take& take) const {
     const std::array<LivingTriangle::Corner, 4> corners = {
         corner(tile, first, x, y), corner(tile, first, x + 1, y), corner(tile, first, x + 1, y + 1),
@@ -73,8 +73,8 @@ class CellsOfTile {
     }
   }
 
-  const GroundShape& shape_;
-  const GroundNumbers& numbers_;
+  const FloorShape& shape_;
+  const FloorNumbers& numbers_;
   const HeightEncoding heights_;
 };
 
@@ -93,7 +93,7 @@ Cells cells_at(Spot spot) noexcept {
 }
 
 /// The tiles that have some cells; none where the raster has none of them.
-std::optional<Ground::Tiles> tiles_of(const GroundShape& shape, const Cells& cells) {
+std::optional<Floor::Tiles> tiles_of(const FloorShape& shape, const Cells& cells) {
   const std::int64_t last_x = std::int64_t{shape.width} - 2;
   const std::int64_t last_y = std::int64_t{shape.height} - 2;
   if (cells.max_x < 0 || cells.max_y < 0 || cells.min_x > last_x || cells.min_y > last_y) {
@@ -102,27 +102,27 @@ std::optional<Ground::Tiles> tiles_of(const GroundShape& shape, const Cells& cel
   const auto tile = [&](std::int64_t cell, std::int64_t last) {
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(cell, 0, last) >> shape.side_log2);
   };
-  return Ground::Tiles{tile(cells.min_x, last_x), tile(cells.min_y, last_y),
-                       tile(cells.max_x, last_x), tile(cells.max_y, last_y)};
+  return Floor::Tiles{tile(cells.min_x, last_x), tile(cells.min_y, last_y),
+                      tile(cells.max_x, last_x), tile(cells.max_y, last_y)};
 }
 
 }  // namespace
 
-std::uint64_t ground_samples(const GroundShape& shape, const GridBox& box) {
-  const std::optional<Ground::Tiles> tiles = tiles_of(shape, cells_of(box));
+std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box) {
+  const std::optional<Floor::Tiles> tiles = tiles_of(shape, cells_of(box));
   if (!tiles) return 0;
   const std::uint64_t columns = std::uint64_t{tiles->last_column} - tiles->first_column + 1;
   const std::uint64_t rows = std::uint64_t{tiles->last_row} - tiles->first_row + 1;
   return (columns * rows) << (2 * shape.side_log2);
 }
 
-bool visit_ground(const Ground& ground, const HeightEncoding& heights, const GroundWish& wish,
-                  const std::function<bool(std::size_t)>& begin,
-                  const std::function<void(const LivingTriangle&)>& take, IoCounters& counters) {
-  const GroundShape& shape = ground.facts().shape;
-  const std::optional<Ground::Tiles> tiles = tiles_of(shape, cells_of(wish.box));
+bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
+                 const std::function<bool(std::size_t)>& begin,
+                 const std::function<void(const LivingTriangle&)>& take, IoCounters& counters) {
+  const FloorShape& shape = floor.facts().shape;
+  const std::optional<Floor::Tiles> tiles = tiles_of(shape, cells_of(wish.box));
   if (!tiles) return true;
-  const auto wants = [&](const Ground::TileBounds& b) {
+  const auto wants = [&](const Floor::TileBounds& b) {
     if (!wish.may_hold) return true;
     const auto at = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
     const GridBox box{at(shape.first_of(b.column)), at(shape.first_of(b.row)),
@@ -130,14 +130,14 @@ bool visit_ground(const Ground& ground, const HeightEncoding& heights, const Gro
                       at(shape.first_of(b.row) + shape.samples_of(b.row, shape.height) - 1)};
     const Interval codes = b.least > b.greatest
                                ? Interval{}
-                               : Interval{heights.code(ground.numbers().bits(b.least)),
-                                          heights.code(ground.numbers().bits(b.greatest))};
+                               : Interval{heights.code(floor.numbers().bits(b.least)),
+                                          heights.code(floor.numbers().bits(b.greatest))};
     return wish.may_hold(box, codes);
   };
-  const CellsOfTile cells(ground, heights);
-  return ground.visit(
+  const CellsOfTile cells(floor, heights);
+  return floor.visit(
       *tiles, wants,
-      [&](const Ground::TileBounds& at, const GroundTile& tile) {
+      [&](const Floor::TileBounds& at, const FloorTile& tile) {
         if (!begin(2 * tile.samples())) return false;
         cells.visit(at, tile, cells_of(wish.box), [&](const LivingTriangle& t) {
           if (meets(box_of(t), wish.box)) take(t);
@@ -147,25 +147,25 @@ bool visit_ground(const Ground& ground, const HeightEncoding& heights, const Gro
       counters);
 }
 
-const GroundAtSpots::Kept& GroundAtSpots::tile_at(std::uint32_t column, std::uint32_t row,
-                                                  IoCounters& counters) {
+const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint32_t row,
+                                                IoCounters& counters) {
   Kept& kept = kept_[(column & 1) + 2 * (row & 1)];
   if (kept.column != column || kept.row != row) {
     kept.column = UINT32_MAX;  // until it is read
-    ground_.read(column, row, page_, kept.tile, counters);
+    floor_.read(column, row, page_, kept.tile, counters);
     kept.column = column;
     kept.row = row;
   }
   return kept;
 }
 
-void GroundAtSpots::visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,
-                          IoCounters& counters) {
-  const GroundShape& shape = ground_.facts().shape;
+void FloorAtSpots::visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,
+                         IoCounters& counters) {
+  const FloorShape& shape = floor_.facts().shape;
   const Cells wanted = cells_at(spot);
-  const std::optional<Ground::Tiles> tiles = tiles_of(shape, wanted);
+  const std::optional<Floor::Tiles> tiles = tiles_of(shape, wanted);
   if (!tiles) return;
-  const CellsOfTile cells(ground_, heights_);
+  const CellsOfTile cells(floor_, heights_);
   for (std::uint32_t row = tiles->first_row; row <= tiles->last_row; ++row) {
     for (std::uint32_t column = tiles->first_column; column <= tiles->last_column; ++column) {
       const Kept& kept = tile_at(column, row, counters);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The heights of a raster in a store: tiles in, tiles out, damage, and where each tile lies.
-#include "storage/ground.h"
+#include "storage/floor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,9 +30,9 @@ struct Raster {
   }
 };
 
-GroundTile tile_of(const Raster& raster, const GroundShape& shape, std::uint32_t column,
+FloorTile tile_of(const Raster& raster, const FloorShape& shape, std::uint32_t column,
                    std::uint32_t row) {
-  GroundTile tile;
+  FloorTile tile;
   tile.width = shape.samples_of(column, shape.width);
   tile.height = shape.samples_of(row, shape.height);
   for (std::uint32_t y = 0; y < tile.height; ++y) {
@@ -48,7 +48,7 @@ GroundTile tile_of(const Raster& raster, const GroundShape& shape, std::uint32_t
 using Place = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Columns and rows of all tiles, along the curve.
-std::vector<Place> in_order(const GroundShape& shape) {
+std::vector<Place> in_order(const FloorShape& shape) {
   std::vector<Place> places;
   for (std::uint32_t row = 0; row < shape.rows(); ++row) {
     for (std::uint32_t column = 0; column < shape.columns(); ++column) {
@@ -56,17 +56,17 @@ std::vector<Place> in_order(const GroundShape& shape) {
     }
   }
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return GroundShape::key(a.first, a.second) < GroundShape::key(b.first, b.second);
+    return FloorShape::key(a.first, a.second) < FloorShape::key(b.first, b.second);
   });
   return places;
 }
 
-class GroundStore : public ::testing::Test {
+class FloorStore : public ::testing::Test {
  protected:
   std::string written(const Raster& raster, std::uint32_t side_log2 = 5) {
-    const std::string path = folder_ / "ground.ptin";
+    const std::string path = folder_.file("floor.ptin");
     const StoreContent content = test::flat_square(1 << 20, HeightType::int32);
-    GroundFacts facts;
+    FloorFacts facts;
     facts.shape = {side_log2, raster.width, raster.height};
     facts.source = SourceNumber::kInt16;
     facts.nodata = -9999;
@@ -74,10 +74,10 @@ class GroundStore : public ::testing::Test {
     StoreWriterOptions options;
     options.overwrite = true;
     const auto writer = StoreWriter::create(path, options);
-    writer->add_ground(facts, [&](GroundWriter& ground) {
+    writer->add_floor(facts, [&](FloorWriter& floor) {
       for (const auto& [column, row] : in_order(facts.shape)) {
         EXPECT_TRUE(
-            ground.add(GroundShape::key(column, row), tile_of(raster, facts.shape, column, row)));
+            floor.add(FloorShape::key(column, row), tile_of(raster, facts.shape, column, row)));
       }
       return true;
     });
@@ -88,14 +88,14 @@ class GroundStore : public ::testing::Test {
 };
 
 void expect_all_tiles(const StoreFile& store, const Raster& raster) {
-  const Ground& ground = *store.ground();
-  const GroundShape& shape = ground.facts().shape;
-  Ground::Page page;
-  GroundTile tile;
+  const Floor& floor = *store.floor();
+  const FloorShape& shape = floor.facts().shape;
+  Floor::Page page;
+  FloorTile tile;
   IoCounters counters;
   for (const auto& [column, row] : in_order(shape)) {
-    ground.read(column, row, page, tile, counters);
-    const GroundTile expected = tile_of(raster, shape, column, row);
+    floor.read(column, row, page, tile, counters);
+    const FloorTile expected = tile_of(raster, shape, column, row);
     ASSERT_EQ(tile.samples(), expected.samples());
     for (std::size_t i = 0; i < tile.samples(); ++i) {
       const bool is_void = !tile.is_void.empty() && tile.is_void[i] != 0;
@@ -103,50 +103,50 @@ void expect_all_tiles(const StoreFile& store, const Raster& raster) {
       if (!is_void) ASSERT_EQ(tile.heights[i], expected.heights[i]);
     }
   }
-  EXPECT_EQ(counters.pages, ground.pages()) << "along the curve each page is read once";
+  EXPECT_EQ(counters.pages, floor.pages()) << "along the curve each page is read once";
 }
 
-TEST_F(GroundStore, TilesComeBack) {
+TEST_F(FloorStore, TilesComeBack) {
   for (const Raster& raster : {Raster{700, 900}, {1, 1}, {2, 2}, {33, 33}, {34, 33}, {1, 200}}) {
     for (const std::uint32_t side_log2 : {4U, 5U, 6U}) {
       const std::string path = written(raster, side_log2);
       for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
         const auto store = StoreFile::open(path, access);
-        ASSERT_NE(store->ground(), nullptr);
-        EXPECT_EQ(store->ground()->facts().nodata, -9999);
-        EXPECT_TRUE(store->ground()->facts().is_exact);
+        ASSERT_NE(store->floor(), nullptr);
+        EXPECT_EQ(store->floor()->facts().nodata, -9999);
+        EXPECT_TRUE(store->floor()->facts().is_exact);
         expect_all_tiles(*store, raster);
       }
     }
   }
 }
 
-TEST_F(GroundStore, ManyPagesHaveNodesAboveNodes) {
-  const Raster raster{4001, 4001};
+TEST_F(FloorStore, ManyPagesHaveNodesAboveNodes) {
+  const Raster raster{1001, 1001};
   const auto store = StoreFile::open(written(raster, 4));
-  EXPECT_GT(store->ground()->pages(), 168U);
+  EXPECT_GT(store->floor()->pages(), 168U);
   expect_all_tiles(*store, raster);
 }
 
-TEST_F(GroundStore, ATileIsOnePageAndANode) {
+TEST_F(FloorStore, ATileIsOnePageAndANode) {
   const auto store = StoreFile::open(written({700, 900}));
-  Ground::Page page;
-  GroundTile tile;
+  Floor::Page page;
+  FloorTile tile;
   IoCounters counters;
-  store->ground()->read(3, 4, page, tile, counters);
+  store->floor()->read(3, 4, page, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
   EXPECT_EQ(counters.index_nodes, 1U);
-  store->ground()->read(3, 4, page, tile, counters);
+  store->floor()->read(3, 4, page, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
 }
 
-TEST_F(GroundStore, SameTilesAreSameBytes) {
+TEST_F(FloorStore, SameTilesAreSameBytes) {
   const Raster raster{300, 200};
   const auto first = test::read_file(written(raster));
   EXPECT_EQ(test::read_file(written(raster)), first);
 }
 
-TEST_F(GroundStore, EveryDamagedByteIsFound) {
+TEST_F(FloorStore, EveryDamagedByteIsFound) {
   const Raster raster{200, 200};
   const std::string path = written(raster);
   const test::Bytes whole = test::read_file(path);
@@ -162,12 +162,12 @@ TEST_F(GroundStore, EveryDamagedByteIsFound) {
     const auto store = StoreFile::open(path);
     EXPECT_THROW(
         {
-          Ground::Page page;
-          GroundTile tile;
+          Floor::Page page;
+          FloorTile tile;
           IoCounters counters;
-          const GroundShape shape = store->ground()->facts().shape;
+          const FloorShape shape = store->floor()->facts().shape;
           for (const auto& [column, row] : in_order(shape)) {
-            store->ground()->read(column, row, page, tile, counters);
+            store->floor()->read(column, row, page, tile, counters);
           }
         },
         Error)
@@ -175,10 +175,10 @@ TEST_F(GroundStore, EveryDamagedByteIsFound) {
   }
 }
 
-TEST_F(GroundStore, AFileWithoutHeightsHasNone) {
-  const std::string path = folder_ / "none.ptin";
+TEST_F(FloorStore, AFileWithoutHeightsHasNone) {
+  const std::string path = folder_.file("none.ptin");
   test::write_store(path, test::flat_square(1 << 20));
-  EXPECT_EQ(StoreFile::open(path)->ground(), nullptr);
+  EXPECT_EQ(StoreFile::open(path)->floor(), nullptr);
 }
 
 }  // namespace

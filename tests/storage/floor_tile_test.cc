@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/ground_tile.h"
+#include "storage/floor_tile.h"
 
 #include <cmath>
 #include <functional>
@@ -13,27 +13,27 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-Bytes packed(const GroundTile& tile) {
+Bytes packed(const FloorTile& tile) {
   Bytes bytes;
-  append_ground_tile(tile, bytes);
+  append_floor_tile(tile, bytes);
   return bytes;
 }
 
 /// The tile of some bytes, and what is wrong with them.
-std::pair<GroundTile, std::string> read(Bytes bytes, std::uint32_t width, std::uint32_t height) {
+std::pair<FloorTile, std::string> read(Bytes bytes, std::uint32_t width, std::uint32_t height) {
   const std::size_t size = bytes.size();
-  bytes.resize(size + kGroundTileTail, std::byte{0xFF});
-  GroundTile tile;
-  const char* const fault = read_ground_tile({bytes.data(), size}, width, height, tile);
+  bytes.resize(size + kFloorTileTail, std::byte{0xFF});
+  FloorTile tile;
+  const char* const fault = read_floor_tile({bytes.data(), size}, width, height, tile);
   return {std::move(tile), fault != nullptr ? fault : ""};
 }
 
-bool is_void(const GroundTile& tile, std::size_t i) {
+bool is_void(const FloorTile& tile, std::size_t i) {
   return !tile.is_void.empty() && tile.is_void[i] != 0;
 }
 
 /// What was packed comes back, but for the heights of void samples; and packs to the same bytes.
-void expect_back(const GroundTile& tile, const std::string& what) {
+void expect_back(const FloorTile& tile, const std::string& what) {
   const Bytes bytes = packed(tile);
   const auto [back, fault] = read(bytes, tile.width, tile.height);
   ASSERT_EQ(fault, "") << what;
@@ -46,9 +46,9 @@ void expect_back(const GroundTile& tile, const std::string& what) {
   EXPECT_EQ(packed(back), bytes) << what;
 }
 
-GroundTile made(std::uint32_t width, std::uint32_t height,
+FloorTile made(std::uint32_t width, std::uint32_t height,
                 const std::function<OrderedHeight(std::uint32_t, std::uint32_t)>& at) {
-  GroundTile tile;
+  FloorTile tile;
   tile.width = width;
   tile.height = height;
   for (std::uint32_t y = 0; y < height; ++y) {
@@ -57,7 +57,7 @@ GroundTile made(std::uint32_t width, std::uint32_t height,
   return tile;
 }
 
-TEST(GroundTile, HeightsOfAllKindsComeBack) {
+TEST(FloorTile, HeightsOfAllKindsComeBack) {
   std::mt19937 random(1);
   for (const auto& [width, height] :
        {std::pair{33U, 33U}, {1U, 1U}, {1U, 65U}, {65U, 65U}, {8U, 4U}, {9U, 5U}, {33U, 2U}}) {
@@ -78,11 +78,11 @@ TEST(GroundTile, HeightsOfAllKindsComeBack) {
   }
 }
 
-TEST(GroundTile, VoidsOfAllKindsComeBack) {
+TEST(FloorTile, VoidsOfAllKindsComeBack) {
   std::mt19937 random(2);
   for (const double share : {0.0, 0.01, 0.2, 0.9, 1.0}) {
     for (const bool is_block : {false, true}) {
-      GroundTile tile = made(33, 30, [](auto x, auto y) { return 1000 + x * y; });
+      FloorTile tile = made(33, 30, [](auto x, auto y) { return 1000 + x * y; });
       tile.is_void.resize(tile.samples());
       for (std::size_t i = 0; i < tile.samples(); ++i) {
         tile.is_void[i] = is_block ? i >= (1 - share) * static_cast<double>(tile.samples())
@@ -98,8 +98,8 @@ TEST(GroundTile, VoidsOfAllKindsComeBack) {
   }
 }
 
-TEST(GroundTile, WhatStandsInVoidSamplesIsOfNoAccount) {
-  GroundTile tile = made(33, 33, [](auto x, auto y) { return 100 * x + y; });
+TEST(FloorTile, WhatStandsInVoidSamplesIsOfNoAccount) {
+  FloorTile tile = made(33, 33, [](auto x, auto y) { return 100 * x + y; });
   tile.is_void.assign(tile.samples(), 0);
   for (const std::size_t i : {0U, 1U, 33U, 500U, 501U, 534U, 1088U}) tile.is_void[i] = 1;
   const Bytes bytes = packed(tile);
@@ -109,15 +109,15 @@ TEST(GroundTile, WhatStandsInVoidSamplesIsOfNoAccount) {
   EXPECT_EQ(packed(tile), bytes);
 }
 
-TEST(GroundTile, SmoothGroundIsSmall) {
-  const GroundTile flat = made(33, 33, [](auto, auto) { return 1234U; });
+TEST(FloorTile, SmoothFloorIsSmall) {
+  const FloorTile flat = made(33, 33, [](auto, auto) { return 1234U; });
   // Voids, the first height, and a width a block.
   EXPECT_EQ(packed(flat).size(), (2 + 32 + 6 * 5 * 9 + 7) / 8U);
 }
 
-TEST(GroundTile, DamagedBytesAreRefusedOrAnotherTile) {
+TEST(FloorTile, DamagedBytesAreRefusedOrAnotherTile) {
   std::mt19937 random(3);
-  GroundTile tile = made(33, 33, [&](auto x, auto y) { return 1000 + x * y + random() % 16; });
+  FloorTile tile = made(33, 33, [&](auto x, auto y) { return 1000 + x * y + random() % 16; });
   tile.is_void.assign(tile.samples(), 0);
   for (std::size_t i = 300; i < 360; ++i) tile.is_void[i] = 1;
   tile.lone = {{310, 5}, {350, 6}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/raster/raster_ground.h"
+#include "engine/construct/raster/raster_floor.h"
 
 #include <algorithm>
 #include <array>
@@ -33,20 +33,20 @@ bool is_of_step(float height, double step) {
 /// What stands against a choice of tiles and numbers.
 enum class Outcome : std::uint8_t { kDone, kTileTooLarge, kHeightsOfNoStep };
 
-class GroundTiles {
+class FloorTiles {
  public:
-  GroundTiles(const RasterSource& source, const GroundFacts& facts, const std::stop_token& stop)
+  FloorTiles(const RasterSource& source, const FloorFacts& facts, const std::stop_token& stop)
       : source_(source), facts_(facts), numbers_(source.frame().heights, facts.step), stop_(stop) {}
 
   /// Adds all tiles, until something stands against it.
-  Outcome add_all(GroundWriter& ground) {
+  Outcome add_all(FloorWriter& floor) {
     for (const std::uint64_t square : squares()) {
       stop_if_asked(stop_, "the build");
       const HilbertCell corner = hilbert_cell(square);
       read_square(corner);
       if (!are_heights_of_step()) return Outcome::kHeightsOfNoStep;
       for (const std::uint64_t key : tiles_of_square(corner)) {
-        if (!ground.add(key, tile(hilbert_cell(key)))) return Outcome::kTileTooLarge;
+        if (!floor.add(key, tile(hilbert_cell(key)))) return Outcome::kTileTooLarge;
       }
     }
     return Outcome::kDone;
@@ -65,7 +65,7 @@ class GroundTiles {
     std::vector<std::uint64_t> keys;
     for (std::uint32_t row = 0; row < facts_.shape.rows(); row += step) {
       for (std::uint32_t column = 0; column < facts_.shape.columns(); column += step) {
-        keys.push_back(GroundShape::key(column, row));
+        keys.push_back(FloorShape::key(column, row));
       }
     }
     std::sort(keys.begin(), keys.end(),
@@ -79,7 +79,7 @@ class GroundTiles {
         std::min(corner.x + tiles_along_square(), facts_.shape.columns());
     for (std::uint32_t row = corner.y; row < end_row; ++row) {
       for (std::uint32_t column = corner.x; column < end_column; ++column) {
-        keys.push_back(GroundShape::key(column, row));
+        keys.push_back(FloorShape::key(column, row));
       }
     }
     std::sort(keys.begin(), keys.end());
@@ -112,8 +112,8 @@ class GroundTiles {
     return true;
   }
 
-  [[nodiscard]] const GroundTile& tile(HilbertCell at) {
-    const GroundShape& shape = facts_.shape;
+  [[nodiscard]] const FloorTile& tile(HilbertCell at) {
+    const FloorShape& shape = facts_.shape;
     tile_.width = shape.samples_of(at.x, shape.width);
     tile_.height = shape.samples_of(at.y, shape.height);
     tile_.heights.assign(tile_.samples(), 0);
@@ -144,20 +144,20 @@ class GroundTiles {
   }
 
   const RasterSource& source_;
-  const GroundFacts& facts_;
-  const GroundNumbers numbers_;
+  const FloorFacts& facts_;
+  const FloorNumbers numbers_;
   const std::stop_token& stop_;
   SampleRange window_;
   std::vector<HeightBits> heights_;
   std::vector<std::uint8_t> valid_, lone_;
-  GroundTile tile_;
+  FloorTile tile_;
 };
 
 }  // namespace
 
-void add_raster_ground(const RasterSource& source, StoreWriter& writer,
-                       const std::stop_token& stop) {
-  GroundFacts facts;
+void add_raster_floor(const RasterSource& source, StoreWriter& writer,
+                      const std::stop_token& stop) {
+  FloorFacts facts;
   facts.shape = {5, static_cast<std::uint32_t>(source.width()),
                  static_cast<std::uint32_t>(source.height())};
   // Steps are tried one by one; a wrong one is found in the first square, as a rule.
@@ -165,8 +165,8 @@ void add_raster_ground(const RasterSource& source, StoreWriter& writer,
   facts.step = next_step < kSteps.size() ? kSteps[next_step] : 0.0;
   Outcome outcome = Outcome::kDone;
   do {
-    writer.add_ground(facts, [&](GroundWriter& ground) {
-      outcome = GroundTiles(source, facts, stop).add_all(ground);
+    writer.add_floor(facts, [&](FloorWriter& floor) {
+      outcome = FloorTiles(source, facts, stop).add_all(floor);
       return outcome == Outcome::kDone;
     });
     if (outcome == Outcome::kHeightsOfNoStep) {

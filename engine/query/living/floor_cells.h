@@ -11,12 +11,12 @@
 #include "engine/geometry/box.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/shape/spot.h"
-#include "storage/ground.h"
+#include "storage/floor.h"
 
 namespace ptin {
 
 /// What of the full TIN is wanted.
-struct GroundWish {
+struct FloorWish {
   GridBox box;  ///< Grid units, closed: triangles whose box meets it.
   /// Whether a box whose heights (codes; empty: all void) lie within an interval may hold what is wanted;
   /// none: it may.
@@ -24,7 +24,7 @@ struct GroundWish {
 };
 
 /// How many samples the tiles have whose cells meet a box, about.
-[[nodiscard]] std::uint64_t ground_samples(const GroundShape& shape, const GridBox& box);
+[[nodiscard]] std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box);
 
 /// Calls begin(most) before the triangles of each tile, of which there are at most so many, and take(t) for each
 /// triangle whose box meets that of the wish, void ones too. Its deviation is 0, its heights are those of its corners.
@@ -32,16 +32,16 @@ struct GroundWish {
 /// @return False where `begin` ended it.
 /// @throws Error corruption, io_error; what the functions throw
 /// Cost: the tiles of the box, 1 ns a sample and 20 ns a cell.
-bool visit_ground(const Ground& ground, const HeightEncoding& heights, const GroundWish& wish,
-                  const std::function<bool(std::size_t)>& begin,
-                  const std::function<void(const LivingTriangle&)>& take, IoCounters& counters);
+bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
+                 const std::function<bool(std::size_t)>& begin,
+                 const std::function<void(const LivingTriangle&)>& take, IoCounters& counters);
 
 /// The triangles of the full TIN at spots, one after the other. Threads: one owner.
-class GroundAtSpots {
+class FloorAtSpots {
  public:
-  /// @param ground  Borrowed.
-  GroundAtSpots(const Ground& ground, const HeightEncoding& heights)
-      : ground_(ground), heights_(heights) {}
+  /// @param floor  Borrowed.
+  FloorAtSpots(const Floor& floor, const HeightEncoding& heights)
+      : floor_(floor), heights_(heights) {}
 
   /// Calls take(t) for the triangles of the cells that hold a spot: one cell, two where it lies on a
   /// side, four on a sample, fewer on the border. Beside the raster there is none.
@@ -54,13 +54,13 @@ class GroundAtSpots {
   /// A tile that was read: neighbours have different places here.
   struct Kept {
     std::uint32_t column = UINT32_MAX, row = UINT32_MAX;
-    GroundTile tile;
+    FloorTile tile;
   };
   [[nodiscard]] const Kept& tile_at(std::uint32_t column, std::uint32_t row, IoCounters& counters);
 
-  const Ground& ground_;
+  const Floor& floor_;
   HeightEncoding heights_;
-  Ground::Page page_;
+  Floor::Page page_;
   std::array<Kept, 4> kept_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/ground_writer.h"
+#include "storage/floor_writer.h"
 
 #include <algorithm>
 #include <cstring>
@@ -30,12 +30,12 @@ void put(std::vector<std::byte>& page, std::size_t at, const T& structure) {
 
 }  // namespace
 
-void GroundWriter::Bounds::join(const Bounds& b) noexcept {
+void FloorWriter::Bounds::join(const Bounds& b) noexcept {
   least = std::min(least, b.least);
   greatest = std::max(greatest, b.greatest);
 }
 
-GroundWriter::Bounds GroundWriter::bounds_of(const GroundTile& tile) {
+FloorWriter::Bounds FloorWriter::bounds_of(const FloorTile& tile) {
   Bounds bounds;
   for (std::size_t i = 0; i < tile.samples(); ++i) {
     if (tile.is_void.empty() || tile.is_void[i] == 0) {
@@ -45,19 +45,19 @@ GroundWriter::Bounds GroundWriter::bounds_of(const GroundTile& tile) {
   return bounds;
 }
 
-bool GroundWriter::add(std::uint64_t key, const GroundTile& tile) {
+bool FloorWriter::add(std::uint64_t key, const FloorTile& tile) {
   PTIN_CHECK(waiting_.empty() || key > waiting_.back().key);
   const std::size_t before = bytes_.size();
-  append_ground_tile(tile, bytes_);
+  append_floor_tile(tile, bytes_);
   const std::size_t own = bytes_.size() - before;
   const auto size_with = [](std::size_t tiles, std::size_t bytes) {
-    return sizeof(layout::GroundPageHead) + tiles * sizeof(layout::GroundTileEntry) + bytes;
+    return sizeof(layout::FloorPageHead) + tiles * sizeof(layout::FloorTileEntry) + bytes;
   };
-  if (size_with(1, own) > layout::kGroundPageBytes) {
+  if (size_with(1, own) > layout::kFloorPageBytes) {
     bytes_.resize(before);
     return false;
   }
-  const bool fits = size_with(waiting_.size() + 1, bytes_.size()) <= layout::kGroundPageBytes &&
+  const bool fits = size_with(waiting_.size() + 1, bytes_.size()) <= layout::kFloorPageBytes &&
                     (waiting_.empty() || key - waiting_.front().key < kMostKeys);
   if (!fits) {
     const std::vector<std::byte> next(bytes_.begin() + static_cast<std::ptrdiff_t>(before),
@@ -70,22 +70,22 @@ bool GroundWriter::add(std::uint64_t key, const GroundTile& tile) {
   return true;
 }
 
-void GroundWriter::finish() {
+void FloorWriter::finish() {
   if (!waiting_.empty()) write_waiting();
 }
 
-void GroundWriter::write_waiting() {
+void FloorWriter::write_waiting() {
   Bounds all;
   for (const Waiting& tile : waiting_) all.join(tile.bounds);
   const std::uint32_t span = all.is_empty() ? 0 : all.greatest - all.least;
-  std::vector<std::byte> page(layout::kGroundPageBytes);
-  std::size_t at = sizeof(layout::GroundPageHead);
-  std::size_t end = at + waiting_.size() * sizeof(layout::GroundTileEntry);
+  std::vector<std::byte> page(layout::kFloorPageBytes);
+  std::size_t at = sizeof(layout::FloorPageHead);
+  std::size_t end = at + waiting_.size() * sizeof(layout::FloorTileEntry);
   std::copy(bytes_.begin(), bytes_.end(), page.begin() + static_cast<std::ptrdiff_t>(end));
   for (const Waiting& tile : waiting_) {
     end += tile.bytes;
-    layout::GroundTileEntry entry{static_cast<std::uint16_t>(tile.key - waiting_.front().key),
-                                  static_cast<std::uint16_t>(end), UINT16_MAX, 0};
+    layout::FloorTileEntry entry{static_cast<std::uint16_t>(tile.key - waiting_.front().key),
+                                 static_cast<std::uint16_t>(end), UINT16_MAX, 0};
     if (!tile.bounds.is_empty()) {
       entry.least = rounded_down(tile.bounds.least, all.least, span);
       entry.greatest = rounded_up(tile.bounds.greatest, all.least, span);
@@ -94,26 +94,26 @@ void GroundWriter::write_waiting() {
     at += sizeof entry;
   }
   put(page, 0,
-      layout::GroundPageHead{static_cast<std::uint16_t>(waiting_.size()),
-                             static_cast<std::uint16_t>(end), all.is_empty() ? 0 : all.least, span,
-                             0});
+      layout::FloorPageHead{static_cast<std::uint16_t>(waiting_.size()),
+                            static_cast<std::uint16_t>(end), all.is_empty() ? 0 : all.least, span,
+                            0});
   entries_.push_back({waiting_.front().key, all.least, all.greatest, checksum_of(page)});
   write_page_(page);
   waiting_.clear();
   bytes_.clear();
 }
 
-std::vector<layout::GroundNode> GroundWriter::nodes(const GroundFacts& facts) const {
-  const GroundTree tree(entries_.size());
-  std::vector<layout::GroundNode> nodes(tree.total_nodes());
-  std::vector<layout::GroundEntry> below = entries_;
+std::vector<layout::FloorNode> FloorWriter::nodes(const FloorFacts& facts) const {
+  const FloorTree tree(entries_.size());
+  std::vector<layout::FloorNode> nodes(tree.total_nodes());
+  std::vector<layout::FloorEntry> below = entries_;
   for (std::size_t level = tree.levels(); level-- > 0;) {
-    std::vector<layout::GroundEntry> here;
+    std::vector<layout::FloorEntry> here;
     for (std::uint64_t number = 0; number < tree.nodes(level); ++number) {
-      layout::GroundNode& node = nodes[tree.position(level, number)];
-      const std::size_t first = number * layout::kGroundFanOut;
+      layout::FloorNode& node = nodes[tree.position(level, number)];
+      const std::size_t first = number * layout::kFloorFanOut;
       node.entries = static_cast<std::uint32_t>(
-          std::min<std::size_t>(layout::kGroundFanOut, below.size() - first));
+          std::min<std::size_t>(layout::kFloorFanOut, below.size() - first));
       Bounds bounds;
       for (std::uint32_t i = 0; i < node.entries; ++i) {
         node.entry[i] = below[first + i];

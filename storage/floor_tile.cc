@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/ground_tile.h"
+#include "storage/floor_tile.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +16,7 @@ constexpr unsigned kVoidsBits = 2;
 constexpr unsigned kHeightBits = 32;
 /// A number of samples, or a place among them: a tile has at most 65 x 65.
 constexpr unsigned kPlaceBits = 13;
-static_assert((kMostGroundSide + 1) * (kMostGroundSide + 1) < (1U << kPlaceBits));
+static_assert((kMostFloorSide + 1) * (kMostFloorSide + 1) < (1U << kPlaceBits));
 /// Widths from 0 to 32.
 constexpr unsigned kWidthBits = 6;
 /// Residuals of a block have one width.
@@ -34,7 +34,7 @@ class BitWriter {
  public:
   explicit BitWriter(std::vector<std::byte>& to) : to_(to), first_(to.size()) {}
   void put(std::uint64_t value, unsigned width) {
-    to_.resize(first_ + (at_ + width) / 8 + 1 + kGroundTileTail);
+    to_.resize(first_ + (at_ + width) / 8 + 1 + kFloorTileTail);
     write_bits(to_.data() + first_, at_, width, value);
     at_ += width;
   }
@@ -67,11 +67,11 @@ class BitReader {
   std::size_t at_ = 0;
 };
 
-bool is_all_void(const GroundTile& tile) {
+bool is_all_void(const FloorTile& tile) {
   return !tile.is_void.empty() &&
          std::find(tile.is_void.begin(), tile.is_void.end(), 0) == tile.is_void.end();
 }
-bool has_voids(const GroundTile& tile) {
+bool has_voids(const FloorTile& tile) {
   return std::find(tile.is_void.begin(), tile.is_void.end(), 1) != tile.is_void.end();
 }
 
@@ -89,7 +89,7 @@ std::vector<std::uint32_t> runs_of(const std::vector<std::uint8_t>& is_void) {
   return runs;
 }
 
-void put_voids(const GroundTile& tile, BitWriter& bits) {
+void put_voids(const FloorTile& tile, BitWriter& bits) {
   const auto count = std::count_if(tile.is_void.begin(), tile.is_void.end(),
                                    [](std::uint8_t v) { return v != 0; });
   const auto put_kind = [&](Voids kind) { bits.put(static_cast<std::uint64_t>(kind), kVoidsBits); };
@@ -109,7 +109,7 @@ void put_voids(const GroundTile& tile, BitWriter& bits) {
 
 /// Heights of void samples are chosen such that what comes after them is well foretold: the gradient of
 /// their neighbours, but between these. One that none precedes has the first height.
-void fill_voids(const GroundTile& tile, std::vector<OrderedHeight>& heights) {
+void fill_voids(const FloorTile& tile, std::vector<OrderedHeight>& heights) {
   const std::size_t width = tile.width;
   const auto first = std::find(tile.is_void.begin(), tile.is_void.end(), 0);
   OrderedHeight last = heights[static_cast<std::size_t>(first - tile.is_void.begin())];
@@ -128,7 +128,7 @@ void fill_voids(const GroundTile& tile, std::vector<OrderedHeight>& heights) {
 }
 
 /// Differences from what the neighbours foretell, in the numbers' own arithmetic, which wraps.
-std::vector<std::uint32_t> residuals_of(const GroundTile& tile,
+std::vector<std::uint32_t> residuals_of(const FloorTile& tile,
                                         const std::vector<OrderedHeight>& heights) {
   const std::size_t width = tile.width;
   std::vector<std::uint32_t> residuals(heights.size());
@@ -155,7 +155,7 @@ bool for_each_block(std::uint32_t width, std::uint32_t height, const Work& work)
   return true;
 }
 
-void put_heights(const GroundTile& tile, BitWriter& bits) {
+void put_heights(const FloorTile& tile, BitWriter& bits) {
   std::vector<OrderedHeight> heights = tile.heights;
   if (has_voids(tile)) fill_voids(tile, heights);
   const std::vector<std::uint32_t> residuals = residuals_of(tile, heights);
@@ -179,9 +179,9 @@ void put_heights(const GroundTile& tile, BitWriter& bits) {
                  });
 }
 
-void put_lone(const GroundTile& tile, BitWriter& bits) {
+void put_lone(const FloorTile& tile, BitWriter& bits) {
   bits.put(tile.lone.size(), kPlaceBits);
-  for (const GroundTile::Lone& lone : tile.lone) {
+  for (const FloorTile::Lone& lone : tile.lone) {
     bits.put(lone.place, kPlaceBits);
     bits.put(lone.height, kHeightBits);
   }
@@ -189,7 +189,7 @@ void put_lone(const GroundTile& tile, BitWriter& bits) {
 
 constexpr const char* kCut = "a tile of heights ends too early";
 
-const char* take_runs(BitReader& bits, GroundTile& tile) {
+const char* take_runs(BitReader& bits, FloorTile& tile) {
   if (!bits.has(kPlaceBits)) return kCut;
   const std::uint32_t count = bits.take(kPlaceBits);
   if (!bits.has(std::size_t{count} * kPlaceBits)) return kCut;
@@ -206,7 +206,7 @@ const char* take_runs(BitReader& bits, GroundTile& tile) {
   return nullptr;
 }
 
-const char* take_voids(BitReader& bits, GroundTile& tile) {
+const char* take_voids(BitReader& bits, FloorTile& tile) {
   if (!bits.has(kVoidsBits)) return kCut;
   const auto kind = static_cast<Voids>(bits.take(kVoidsBits));
   tile.is_void.clear();
@@ -220,7 +220,7 @@ const char* take_voids(BitReader& bits, GroundTile& tile) {
 }
 
 /// Residuals to heights: a sum along each row, and down each column.
-void sum_up(GroundTile& tile) noexcept {
+void sum_up(FloorTile& tile) noexcept {
   const std::size_t width = tile.width;
   for (std::size_t row = 0; row < tile.height; ++row) {
     OrderedHeight* const here = tile.heights.data() + row * width;
@@ -232,7 +232,7 @@ void sum_up(GroundTile& tile) noexcept {
   }
 }
 
-const char* take_heights(BitReader& bits, GroundTile& tile) {
+const char* take_heights(BitReader& bits, FloorTile& tile) {
   if (!bits.has(kHeightBits)) return kCut;
   const OrderedHeight first_height = bits.take(kHeightBits);
   tile.heights.resize(tile.samples());
@@ -248,12 +248,13 @@ const char* take_heights(BitReader& bits, GroundTile& tile) {
         return true;
       });
   if (!is_whole) return "a tile of heights ends too early, or has numbers of more than 32 bits";
+  if (tile.heights.front() != 0) return "a tile of heights tells its first height twice";
   tile.heights.front() = first_height;
   sum_up(tile);
   return nullptr;
 }
 
-const char* take_lone(BitReader& bits, GroundTile& tile) {
+const char* take_lone(BitReader& bits, FloorTile& tile) {
   tile.lone.clear();
   if (!bits.has(kPlaceBits)) return kCut;
   const std::uint32_t count = bits.take(kPlaceBits);
@@ -271,7 +272,7 @@ const char* take_lone(BitReader& bits, GroundTile& tile) {
 
 }  // namespace
 
-void append_ground_tile(const GroundTile& tile, std::vector<std::byte>& to) {
+void append_floor_tile(const FloorTile& tile, std::vector<std::byte>& to) {
   BitWriter bits(to);
   put_voids(tile, bits);
   if (!is_all_void(tile)) put_heights(tile, bits);
@@ -279,8 +280,8 @@ void append_ground_tile(const GroundTile& tile, std::vector<std::byte>& to) {
   bits.end();
 }
 
-const char* read_ground_tile(std::span<const std::byte> from, std::uint32_t width,
-                             std::uint32_t height, GroundTile& tile) {
+const char* read_floor_tile(std::span<const std::byte> from, std::uint32_t width,
+                            std::uint32_t height, FloorTile& tile) {
   tile.width = width;
   tile.height = height;
   BitReader bits(from);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "storage/ground_facts.h"
+#include "storage/floor_facts.h"
 
 #include <bit>
 
@@ -7,14 +7,14 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint8_t kGradient = 1;  ///< The coding of tiles (ground_tile.h).
+constexpr std::uint8_t kGradient = 1;  ///< The coding of tiles (floor_tile.h).
 constexpr std::uint16_t kIsExact = 1, kHasNodata = 2;
 constexpr std::uint32_t kLeastSideLog2 = 4, kMostSideLog2 = 6;
-static_assert((1U << kMostSideLog2) == kMostGroundSide);
+static_assert((1U << kMostSideLog2) == kMostFloorSide);
 
 }  // namespace
 
-void put_facts(const GroundFacts& facts, std::uint64_t pages, layout::GroundNode& root) noexcept {
+void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& root) noexcept {
   root.side_log2 = static_cast<std::uint8_t>(facts.shape.side_log2);
   root.coding = kGradient;
   root.flags =
@@ -27,7 +27,7 @@ void put_facts(const GroundFacts& facts, std::uint64_t pages, layout::GroundNode
   root.source_type = static_cast<std::uint32_t>(facts.source);
 }
 
-const char* take_facts(const layout::GroundNode& root, GroundFacts& facts,
+const char* take_facts(const layout::FloorNode& root, FloorFacts& facts,
                        std::uint64_t& pages) noexcept {
   facts.shape = {root.side_log2, root.width, root.height};
   if (root.coding != kGradient)

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "engine/geometry/height.h"
-#include "storage/ground_shape.h"
-#include "storage/ground_tile.h"
+#include "storage/floor_shape.h"
+#include "storage/floor_tile.h"
 #include "storage/page_columns.h"
 
 namespace ptin {
@@ -28,8 +28,8 @@ enum class SourceNumber : std::uint32_t {
   kFloat64 = 8,
 };
 
-struct GroundFacts {
-  GroundShape shape;
+struct FloorFacts {
+  FloorShape shape;
   /// Of heights that are stored as float32: each is float(step * k), and tiles hold k. 0: they hold the
   /// floats in their order. Of int32 it is 0, and tiles hold the codes.
   double step = 0.0;
@@ -41,9 +41,9 @@ struct GroundFacts {
 };
 
 /// Heights as tiles hold them, and as stored elsewhere in the file.
-class GroundNumbers {
+class FloorNumbers {
  public:
-  GroundNumbers(const HeightEncoding& heights, double step) noexcept
+  FloorNumbers(const HeightEncoding& heights, double step) noexcept
       : type_(heights.type), step_(step) {}
 
   [[nodiscard]] HeightBits bits(OrderedHeight ordered) const noexcept {
@@ -65,9 +65,9 @@ class GroundNumbers {
 };
 
 /// Puts facts into the root above the pages.
-void put_facts(const GroundFacts& facts, std::uint64_t pages, layout::GroundNode& root) noexcept;
+void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& root) noexcept;
 /// @return What is wrong with the root, as a sentence; null where nothing is.
-[[nodiscard]] const char* take_facts(const layout::GroundNode& root, GroundFacts& facts,
+[[nodiscard]] const char* take_facts(const layout::FloorNode& root, FloorFacts& facts,
                                      std::uint64_t& pages) noexcept;
 
 }  // namespace ptin

@@ -13,13 +13,13 @@
 #include "engine/geometry/height.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/readable_file.h"
-#include "storage/ground_facts.h"
-#include "storage/ground_tile.h"
+#include "storage/floor_facts.h"
+#include "storage/floor_tile.h"
 
 namespace ptin {
 
 /// Where the sections lie.
-struct GroundPlace {
+struct FloorPlace {
   ByteRange nodes, pages;
   std::uint64_t root_checksum = 0;
 };
@@ -27,12 +27,12 @@ struct GroundPlace {
 /// Reads pages of heights, and verifies each before its tiles are seen: an entry of a node holds the
 /// checksum of what it describes, and the section table that of the root. Threads: const functions may
 /// be called at once.
-class Ground {
+class Floor {
  public:
   /// A page that was read last, for tiles that lie on it, too. A value of its caller's.
   class Page {
    private:
-    friend class Ground;
+    friend class Floor;
     std::uint64_t number_ = UINT64_MAX, first_ = 0;
     std::vector<std::byte> bytes_;
   };
@@ -40,10 +40,10 @@ class Ground {
   /// Reads the root.
   /// @param file  Borrowed.
   /// @throws Error corruption, io_error
-  Ground(const ReadableFile& file, const GroundPlace& place, const HeightEncoding& heights);
+  Floor(const ReadableFile& file, const FloorPlace& place, const HeightEncoding& heights);
 
-  [[nodiscard]] const GroundFacts& facts() const noexcept { return facts_; }
-  [[nodiscard]] const GroundNumbers& numbers() const noexcept { return numbers_; }
+  [[nodiscard]] const FloorFacts& facts() const noexcept { return facts_; }
+  [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] std::uint64_t pages() const noexcept { return tree_.pages(); }
 
   /// Tiles from a column and a row to others, these too.
@@ -65,7 +65,7 @@ class Ground {
   /// @throws Error corruption, io_error; what the functions throw
   /// Cost: the nodes and pages of these tiles, announced together; 16 bytes a tile.
   bool visit(const Tiles& tiles, const std::function<bool(const TileBounds&)>& wants,
-             const std::function<bool(const TileBounds&, const GroundTile&)>& take,
+             const std::function<bool(const TileBounds&, const FloorTile&)>& take,
              IoCounters& counters) const;
 
   /// Reads a tile.
@@ -73,7 +73,7 @@ class Ground {
   /// REQUIRES: there is such a column and row of tiles.
   /// @throws Error corruption, io_error
   /// Cost: a node a level and a page, about 3 us where the system has them; 1 ns a sample.
-  void read(std::uint32_t column, std::uint32_t row, Page& page, GroundTile& tile,
+  void read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
             IoCounters& counters) const;
 
  private:
@@ -82,16 +82,16 @@ class Ground {
   struct Slot {
     std::mutex lock;
     std::uint64_t position = UINT64_MAX;
-    layout::GroundNode node;
+    layout::FloorNode node;
   };
 
-  [[nodiscard]] layout::GroundNode node(std::size_t level, std::uint64_t number,
-                                        std::uint64_t checksum, IoCounters& counters) const;
+  [[nodiscard]] layout::FloorNode node(std::size_t level, std::uint64_t number,
+                                       std::uint64_t checksum, IoCounters& counters) const;
   /// A page as the node above it describes it.
   struct Found {
     std::uint64_t number;
     std::uint64_t end;  ///< Key of the first tile of the next page.
-    layout::GroundEntry entry;
+    layout::FloorEntry entry;
   };
   /// The page that holds a key.
   [[nodiscard]] Found find(std::uint64_t key, IoCounters& counters) const;
@@ -102,14 +102,14 @@ class Ground {
                                             const std::function<bool(const TileBounds&)>& wants,
                                             IoCounters& counters) const;
   void decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
-              GroundTile& tile) const;
+              FloorTile& tile) const;
   [[noreturn]] void damaged(const char* what) const;
 
   const ReadableFile& file_;
-  GroundPlace place_;
-  GroundFacts facts_;
-  GroundTree tree_{1};
-  GroundNumbers numbers_;
+  FloorPlace place_;
+  FloorFacts facts_;
+  FloorTree tree_{1};
+  FloorNumbers numbers_;
   mutable std::vector<Slot> slots_{kSlots};
 };
 
