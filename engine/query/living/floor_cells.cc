@@ -65,7 +65,9 @@ class CellsOfTile {
         t.corner[i] = corners[numbers[i]];
         t.is_void = t.is_void || !t.corner[i].has_height;
       }
-      for (std::size_t i = 0; i < 3 && !t.is_void; ++i) {
+      // A void triangle has surface on a side, or at a corner, that has heights.
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!t.corner[i].has_height) continue;
         const double code = cell.code[numbers[i]];
         t.heights = {std::min(t.heights.lo, code), std::max(t.heights.hi, code)};
       }

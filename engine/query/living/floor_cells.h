@@ -27,7 +27,7 @@ struct FloorWish {
 [[nodiscard]] std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box);
 
 /// Calls begin(most) before the triangles of each tile, of which there are at most so many, and take(t) for each
-/// triangle whose box meets that of the wish, void ones too. Its deviation is 0, its heights are those of its corners.
+/// triangle whose box meets that of the wish, void ones too. Its deviation is 0, its heights are those of its corners that have one.
 /// @param begin  False ends it.
 /// @return False where `begin` ended it.
 /// @throws Error corruption, io_error; what the functions throw
