@@ -64,6 +64,15 @@ def source():
     return array, transform
 
 
+def large_file(array):
+    """A file of whole heights, of numbers alone and a header."""
+    array.astype("<i2").tofile("large.bil")
+    with open("large.hdr", "w") as header:
+        header.write(f"NROWS {array.shape[0]}\nNCOLS {array.shape[1]}\nNBANDS 1\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER I\n")
+        header.write("LAYOUT BIL\nULXMAP 500000\nULYMAP 4000000\nXDIM 30\nYDIM 30\n")
+    return "large.bil"
+
+
 class OnTerrain(unittest.TestCase):
     def setUp(self):
         self.t = ptin.open("dem.ptin")
@@ -224,6 +233,16 @@ class Answers(OnTerrain):
                 self.t.volume(polygon=wrong)
         with self.assertRaisesRegex(ptin.InvalidArgument, "masked"):
             self.t.profile(masked)
+
+    def test_a_process_that_only_asks_reads_polygons_of_files(self):
+        with open("triangle.geojson", "w") as file:
+            file.write('{"type": "Polygon", "coordinates": [[[-118.32, 34.36], [-118.30, 34.36], [-118.30, 34.38], [-118.32, 34.36]]]}')
+        asked = (
+            f"import sys; sys.path.insert(0, {os.path.dirname(os.path.dirname(ptin.__file__))!r}); import ptin\n"
+            "print(round(ptin.open('dem.ptin').volume(polygon='triangle.geojson').area.surface / 1e3))"
+        )
+        done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True)
+        self.assertEqual((done.stdout, done.stderr), ("2040\n", ""))
 
     def test_regions_of_another_crs_are_where_they_are(self):
         west, south, east, north = degrees = (-118.32, 34.36, -118.30, 34.38)
@@ -737,6 +756,15 @@ class Process(OnTerrain):
         with self.assertRaises(KeyError):
             ptin.build(np.tile(array, (4, 4)), "array_stopped.ptin", transform=transform, tile=256, progress=progress)
         self.assertEqual([name for name in os.listdir(".") if "array_stopped" in name], [])
+        # What another build has left stays where this one was refused before it began.
+        with self.assertRaises(KeyError):
+            ptin.build(large_file(np.tile(array, (4, 4))), "array_stopped.ptin", tile=256, progress=progress)
+        for options in ({"colour": "red"}, {"memory": "1M"}, {"tile": -1}):
+            with self.assertRaises((TypeError, ptin.Error)):
+                ptin.build(array, "array_stopped.ptin", transform=transform, **options)
+            self.assertTrue(os.path.exists(".array_stopped.ptin.ptin-build/manifest"))
+        report = ptin.build(array, "array_stopped.ptin", transform=transform)
+        self.assertEqual((report.samples, os.path.exists(".array_stopped.ptin.ptin-build")), (66049, False))
 
     def test_nothing_leaks(self):
         window = (378000, 3803000, 379000, 3804000)

@@ -225,10 +225,10 @@ py::dict build_terrain(const std::vector<std::string>& inputs, const std::string
   return report_of(report);
 }
 
-}  // namespace
-
 /// Removes what an interrupted build of `output` has left.
 void discard(const std::string& output) { Workspace::discard(FileLayer::system(), output); }
+
+}  // namespace
 
 void add_build(py::module_& module) {
   py::class_<ArraySource>(module, "ArraySource").def_property_readonly("name", &ArraySource::name);
@@ -247,6 +247,7 @@ void add_build(py::module_& module) {
   module.def("build", build_terrain);
   module.def("build_options", list_of_options);
   module.def("discard", discard);
+  module.def("work_folder", &Workspace::folder_of);
 }
 
 }  // namespace ptin::python

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <cpl_error.h>
+#include <gdal.h>
 
 #include "engine/error.h"
 #include "engine/stop.h"
@@ -50,6 +51,8 @@ std::vector<py::array_t<double>> paths_of_crs(const OpenTerrain& t,
 std::vector<py::array_t<double>> rings_of_file(const OpenTerrain& t, const std::string& text) {
   std::stop_source stop;
   const Polygon polygon = run_interruptibly(stop, [&] {
+    const CPLErrorHandlerPusher silent(CPLQuietErrorHandler);
+    GDALAllRegister();  // of which a process that only asks has none yet
     return tools::read_polygon(text, tools::plane_of(t.terrain.store().facts(), t.crs)).polygon;
   });
   std::vector<py::array_t<double>> rings;

@@ -28,7 +28,7 @@ struct RasterRequest {
   /// Instead of `detail`: the finest TIN that has about as many vertices in the window as there are
   /// pixels (detail_for()). Another window, or another number of pixels, may get another TIN.
   bool as_fine_as_pixels = false;
-  /// The level that is as fine as the pixels has no greater error.
+  /// The level that is as fine as the pixels has no greater error, height's unit.
   double most_error = kInfinity;
 
   bool heights = true;

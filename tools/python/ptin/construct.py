@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _ptin
-from .errors import Error, InvalidArgument, NotFound
+from .errors import Error, InvalidArgument
 from .results import Report
 from .terrain import Memory, Path, _bytes, _crs, _whole
 
@@ -121,13 +121,24 @@ def _names(inputs: Any) -> list[str]:
     return [os.fspath(one) for one in inputs]
 
 
+def _state_of_work(output: str) -> Any:
+    """What tells an unfinished build of an output from another one; None: there is none."""
+    try:
+        status = os.stat(os.path.join(_ptin.work_folder(output), "manifest"))
+    except OSError:
+        return None
+    return (status.st_ino, status.st_mtime_ns, status.st_size)
+
+
 @contextmanager
 def _named_array(source: Any, output: str) -> Iterator[None]:
     """A build of an array: errors say so in place of a file's name, and nothing stays that could not be resumed."""
+    before = _state_of_work(output)
     try:
         yield
     except BaseException as raised:
-        if source is not None and not isinstance(raised, (InvalidArgument, NotFound)):
+        # What was there before is a build of files, which may go on: this one was refused before it began.
+        if source is not None and _state_of_work(output) != before:
             _ptin.discard(output)
         if source is not None and isinstance(raised, Error):
             raised.args = tuple(text.replace(source.name, "the array") for text in raised.args)

@@ -2,7 +2,7 @@
 //
 // The mesh as the GPU wants it: positions and normals around the local origin, corners of the surface's triangles. Void
 // triangles are left out, so voids stay open.
-import { heightOf, type MeshView, none, surfaceCorners, triangleWords, vertexWords } from 'ptin-decoder';
+import { heightOf, type MeshView, none, normalsOf, surfaceCorners, triangleWords, vertexWords } from 'ptin-decoder';
 import type { Frame } from './frame';
 
 export interface DrawnMesh {
@@ -37,27 +37,12 @@ function drawnPositions(mesh: MeshView, frame: Frame): Float32Array {
   return positions;
 }
 
+/** Unit normals as the card takes them: 16 bits a number, four numbers a vertex. */
 function drawnNormals(positions: Float32Array, corners: Uint32Array): Int16Array {
-  const sums = new Float32Array(positions.length);
-  for (let i = 0; i < corners.length; i += 3) {
-    const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
-    const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1];
-    const uz = positions[b + 2] - positions[a + 2];
-    const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1];
-    const vz = positions[c + 2] - positions[a + 2];
-    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-    for (const at of [a, b, c]) {
-      sums[at] += x;
-      sums[at + 1] += y;
-      sums[at + 2] += z;
-    }
-  }
+  const units = normalsOf(positions, corners);
   const normals = new Int16Array(positions.length / 3 * 4);
-  for (let from = 0, to = 0; from < sums.length; from += 3, to += 4) {
-    const length = Math.hypot(sums[from], sums[from + 1], sums[from + 2]) || 1;
-    normals[to] = Math.round(32767 * sums[from] / length);
-    normals[to + 1] = Math.round(32767 * sums[from + 1] / length);
-    normals[to + 2] = Math.round(32767 * sums[from + 2] / length);
+  for (let from = 0, to = 0; from < units.length; from += 3, to += 4) {
+    for (let i = 0; i < 3; ++i) normals[to + i] = Math.round(32767 * units[from + i]);
   }
   return normals;
 }
