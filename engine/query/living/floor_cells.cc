@@ -5,6 +5,7 @@
 #include <array>
 
 #include "engine/mesh/raster_cell.h"
+#include "storage/page_columns.h"
 
 namespace ptin {
 
@@ -118,10 +119,51 @@ std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box) {
   return (columns * rows) << (2 * shape.side_log2);
 }
 
+namespace {
+
+/// The samples of tiles with heights in the order of those that are stored elsewhere in the file.
+class SquareOfTile {
+ public:
+  SquareOfTile(const Floor& floor, const HeightEncoding& heights)
+      : shape_(floor.facts().shape),
+        numbers_(floor.numbers()),
+        heights_(heights),
+        has_step_(floor.facts().step != 0) {}
+
+  /// The result is there until the next call, and as long as the tile.
+  [[nodiscard]] RasterSquare of(const Floor::TileAt& at, const FloorTile& tile) {
+    RasterSquare square;
+    square.first = {static_cast<std::int32_t>(shape_.first_of(at.column)),
+                    static_cast<std::int32_t>(shape_.first_of(at.row))};
+    square.width = tile.width;
+    square.height = tile.height;
+    square.heights = tile.heights;
+    square.is_void = tile.is_void;
+    if (has_step_) {
+      ordered_.resize(tile.samples());
+      std::transform(
+          tile.heights.begin(), tile.heights.end(), ordered_.begin(),
+          [&](OrderedHeight k) { return ordered_height(numbers_.bits(k), heights_.type); });
+      square.heights = ordered_;
+    }
+    return square;
+  }
+
+ private:
+  const FloorShape& shape_;
+  const FloorNumbers& numbers_;
+  const HeightEncoding heights_;
+  const bool has_step_;
+  std::vector<OrderedHeight> ordered_;
+};
+
+}  // namespace
+
 bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
                  const std::function<bool(std::size_t)>& begin,
                  const std::function<void(const LivingTriangle&)>& take, QueryCost& cost) {
   const CellsOfTile cells(floor, heights);
+  SquareOfTile square(floor, heights);
   return floor.visit(
       [&](const Floor::Bounds& b) {
         return meets(b.box, wish.box) && (!wish.may_hold || wish.may_hold(b.box, b.codes));
@@ -129,6 +171,10 @@ bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorW
       [&](const Floor::TileAt& at, const FloorTile& tile) {
         if (!begin(2 * tile.samples())) return false;
         cost.samples_read += tile.samples();
+        if (wish.take_cells && tile.width > 1 && tile.height > 1 &&
+            wish.take_cells(square.of(at, tile))) {
+          return true;
+        }
         cells.visit(at.column, at.row, tile, cells_of(wish.box), [&](const LivingTriangle& t) {
           if (meets(box_of(t), wish.box)) take(t);
         });

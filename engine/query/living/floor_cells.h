@@ -10,6 +10,7 @@
 
 #include "engine/geometry/box.h"
 #include "engine/query/living/living_triangle.h"
+#include "engine/query/living/raster_square.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/shape/spot.h"
 #include "storage/floor.h"
@@ -22,6 +23,8 @@ struct FloorWish {
   /// Whether a box whose heights (codes; empty: all void) lie within an interval may hold what is wanted;
   /// none: it may.
   std::function<bool(const GridBox&, const Interval&)> may_hold;
+  /// Takes the cells of a tile before they are triangles; false, or none: they come one by one.
+  std::function<bool(const RasterSquare&)> take_cells;
 };
 
 /// How many samples the tiles have whose cells meet a box, about.

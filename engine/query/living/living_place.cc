@@ -112,6 +112,7 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
     return (!asks_heights || (!is_empty(codes) && meets(codes, place.heights))) &&
            (also == nullptr || also->may_hold({box, codes, kInfinity, -kInfinity}));
   };
+  wish.take_cells = [&](const RasterSquare& square) { return visitor.take_cells(square); };
   const std::uint64_t samples = floor_samples(floor.facts().shape, place.box);
   if (!visitor.expect(samples)) {
     return false;
