@@ -14,7 +14,7 @@ namespace ptin {
 namespace {
 
 /// Tiles that are looked for together.
-constexpr std::size_t kTilesAtOnce = 65536;
+constexpr std::size_t kTilesAtOnce = 8192;
 
 /// The tiles of a rectangle by their keys, ascending, some at a time. Memory: 8 bytes for each of
 /// those, and for each square of 64 tiles a side.
@@ -114,6 +114,9 @@ layout::FloorNode Floor::node(std::size_t level, const Child& at, IoCounters& co
   }
   const layout::FloorNode read = read_node(level, at.number, at.entry.checksum);
   file_.settle(counters);
+  if (read.entry[0].first != at.entry.first || read.entry[read.entries - 1].first >= at.end) {
+    damaged("the entries of a node above the heights are not those of its parent's keys");
+  }
   const std::lock_guard lock(slot.lock);
   slot.position = UINT64_MAX;  // where there is no memory, it holds none
   if (slot.node == nullptr) slot.node = std::make_unique<layout::FloorNode>();

@@ -89,8 +89,8 @@ class Floor {
   /// @return False when `take` ended it.
   /// REQUIRES: the tiles are those of the shape.
   /// @throws Error corruption, io_error; what the functions throw
-  /// Cost: the nodes and pages of these tiles. Pages of up to 65536 tiles at a time are announced
-  /// together; they take 4 MiB of memory.
+  /// Cost: the nodes and pages of these tiles. Pages of about 8192 tiles at a time are announced
+  /// together; they take 1 MiB of memory at most.
   bool visit(const Tiles& tiles, const std::function<bool(const TileBounds&)>& wants,
              const std::function<bool(const TileBounds&, const FloorTile&)>& take,
              IoCounters& counters) const;

@@ -17,6 +17,7 @@
 
 #include "engine/error.h"
 #include "engine/query/living/living_page.h"
+#include "storage/floor.h"
 #include "storage/point_directory.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
@@ -45,6 +46,10 @@ void use(const std::string& path, PageAccess access) {
   } catch (const Error&) {
   }
   store->pages().announce(pages, counters);
+  try {
+    use_floor(*store);
+  } catch (const Error&) {
+  }
   for (std::uint64_t i = 0; i < store->pages().page_count() && i < 200; ++i) {
     try {
       records.clear();
@@ -58,6 +63,18 @@ void use(const std::string& path, PageAccess access) {
     } catch (const Error&) {
     }
   }
+}
+
+/// The heights of a raster.
+void use_floor(const StoreFile& store) {
+  const Floor* const floor = store.floor();
+  if (floor == nullptr) {
+    return;
+  }
+  IoCounters counters;
+  floor->visit(
+      {0, 0, 0, 0}, [](const Floor::TileBounds&) { return true; },
+      [](const Floor::TileBounds&, const FloorTile&) { return true; }, counters);
 }
 
 /// As a file that lies elsewhere: by its directory.

@@ -31,7 +31,7 @@ struct Raster {
 };
 
 FloorTile tile_of(const Raster& raster, const FloorShape& shape, std::uint32_t column,
-                   std::uint32_t row) {
+                  std::uint32_t row) {
   FloorTile tile;
   tile.width = shape.samples_of(column, shape.width);
   tile.height = shape.samples_of(row, shape.height);
@@ -65,7 +65,9 @@ class FloorStore : public ::testing::Test {
  protected:
   std::string written(const Raster& raster, std::uint32_t side_log2 = 5) {
     const std::string path = folder_.file("floor.ptin");
-    const StoreContent content = test::flat_square(1 << 20, HeightType::int32);
+    const StoreContent content =
+        test::flat_rectangle(static_cast<std::int32_t>(raster.width) - 1,
+                             static_cast<std::int32_t>(raster.height) - 1, HeightType::int32);
     FloorFacts facts;
     facts.shape = {side_log2, raster.width, raster.height};
     facts.source = SourceNumber::kInt16;
@@ -100,7 +102,9 @@ void expect_all_tiles(const StoreFile& store, const Raster& raster) {
     for (std::size_t i = 0; i < tile.samples(); ++i) {
       const bool is_void = !tile.is_void.empty() && tile.is_void[i] != 0;
       ASSERT_EQ(is_void, expected.is_void[i] != 0);
-      if (!is_void) ASSERT_EQ(tile.heights[i], expected.heights[i]);
+      if (!is_void) {
+        ASSERT_EQ(tile.heights[i], expected.heights[i]);
+      }
     }
   }
   EXPECT_EQ(counters.pages, floor.pages()) << "along the curve each page is read once";
@@ -140,6 +144,35 @@ TEST_F(FloorStore, ATileIsOnePageAndANode) {
   EXPECT_EQ(counters.pages, 1U);
 }
 
+TEST_F(FloorStore, AWindowReadsItsPagesAndNodesOnce) {
+  const Raster raster{1500, 1500};
+  const auto store = StoreFile::open(written(raster, 4));
+  const Floor& floor = *store->floor();
+  ASSERT_GT(floor.facts().shape.tiles(), 8192U) << "that are looked for together";
+  const Floor::Tiles windows[] = {{0, 0, 93, 93}, {60, 60, 67, 70}, {5, 90, 5, 90}};
+  for (const Floor::Tiles& w : windows) {
+    std::set<Place> places;
+    std::uint64_t last = 0;
+    IoCounters counters;
+    floor.visit(
+        w, [](const Floor::TileBounds&) { return true; },
+        [&](const Floor::TileBounds& at, const FloorTile& tile) {
+          const std::uint64_t key = FloorShape::key(at.column, at.row);
+          EXPECT_TRUE(places.empty() || key > last) << "along the curve";
+          last = key;
+          EXPECT_EQ(tile.heights.front(), raster.is_void(at.column * 16, at.row * 16)
+                                              ? tile.heights.front()
+                                              : raster.at(at.column * 16, at.row * 16));
+          return places.emplace(at.column, at.row).second;
+        },
+        counters);
+    EXPECT_EQ(places.size(),
+              std::size_t{w.last_column - w.first_column + 1} * (w.last_row - w.first_row + 1));
+    EXPECT_LE(counters.pages, floor.pages());
+    EXPECT_LE(counters.index_nodes, 1 + floor.pages() / layout::kFloorFanOut + 1);
+  }
+}
+
 TEST_F(FloorStore, SameTilesAreSameBytes) {
   const Raster raster{300, 200};
   const auto first = test::read_file(written(raster));
@@ -152,7 +185,7 @@ TEST_F(FloorStore, EveryDamagedByteIsFound) {
   const test::Bytes whole = test::read_file(path);
   std::uint64_t begin = 0;
   for (const SectionInfo& section : StoreFile::open(path)->sections()) {
-    if (section.name == "height nodes") begin = section.offset;
+    if (section.name == "height root") begin = section.offset;
   }
   ASSERT_GT(begin, 0U);
   for (std::size_t at = begin; at < whole.size(); at += 97) {

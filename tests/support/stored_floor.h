@@ -31,13 +31,13 @@ inline StoredFloor floor_of(const StoreFile& store) {
   result.facts = floor.facts();
   const FloorShape& shape = result.facts.shape;
   IoCounters counters;
-  floor.visit({0, 0, shape.columns() - 1, shape.rows() - 1},
-              [](const Floor::TileBounds&) { return true; },
-              [&](const Floor::TileBounds& at, const FloorTile& tile) {
-                result.tiles.emplace(FloorShape::key(at.column, at.row), tile);
-                return true;
-              },
-              counters);
+  floor.visit(
+      {0, 0, shape.columns() - 1, shape.rows() - 1}, [](const Floor::TileBounds&) { return true; },
+      [&](const Floor::TileBounds& at, const FloorTile& tile) {
+        result.tiles.emplace(FloorShape::key(at.column, at.row), tile);
+        return true;
+      },
+      counters);
   return result;
 }
 
@@ -54,17 +54,6 @@ struct FloorSections {
   }
   [[nodiscard]] std::span<std::byte> page(std::uint64_t number) {
     return std::span(pages).subspan(number * layout::kFloorPageBytes, layout::kFloorPageBytes);
-  }
-  /// Checksums of pages into leaves, of nodes into those above.
-  void seal() {
-    const FloorTree shape = tree();
-    for (std::size_t level = shape.levels(); level-- > 0;) {
-      for (std::uint64_t child = 0; child < shape.entries(level); ++child) {
-        node(level, child / layout::kFloorFanOut).entry[child % layout::kFloorFanOut].checksum =
-            level + 1 == shape.levels() ? checksum_of(page(child))
-                                        : checksum_of_object(node(level + 1, child));
-      }
-    }
   }
 };
 
