@@ -2,6 +2,7 @@
 #include "storage/floor.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "engine/error.h"
@@ -59,6 +60,15 @@ class KeysOfTiles {
   std::size_t at_ = 0;
 };
 
+/// Of a far file the root comes together with the first nodes below it: in most files with all.
+void announce_nodes(const ReadableFile& file, const FloorPlace& place) {
+  constexpr std::uint64_t kMostBytes = 15 * layout::kNodeBytes;
+  if (!file.is_far()) return;
+  const std::array ranges{ByteRange{place.root, layout::kNodeBytes},
+                          ByteRange{place.nodes.offset, std::min(place.nodes.bytes, kMostBytes)}};
+  file.will_need(ranges);
+}
+
 /// Keys from one on that come before another.
 std::span<const std::uint64_t> keys_between(std::span<const std::uint64_t> keys,
                                             std::uint64_t first, std::uint64_t end) {
@@ -70,6 +80,7 @@ std::span<const std::uint64_t> keys_between(std::span<const std::uint64_t> keys,
 
 Floor::Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts& store)
     : file_(file), place_(place), numbers_(store.heights, 0.0) {
+  announce_nodes(file_, place_);
   file_.read_at(std::as_writable_bytes(std::span(&root_, 1)), place_.root);
   if (checksum_of_object(root_) != place_.root_checksum) {
     damaged("the root above the heights does not match its checksum; the file is damaged");

@@ -72,7 +72,7 @@ bool is_all_void(const FloorTile& tile) {
          std::find(tile.is_void.begin(), tile.is_void.end(), 0) == tile.is_void.end();
 }
 bool has_voids(const FloorTile& tile) {
-  return std::find(tile.is_void.begin(), tile.is_void.end(), 1) != tile.is_void.end();
+  return std::ranges::any_of(tile.is_void, [](std::uint8_t v) { return v != 0; });
 }
 
 /// Lengths of runs of samples that are not void and void, in turn; the first may be 0.

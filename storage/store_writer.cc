@@ -304,6 +304,7 @@ void StoreWriter::add_floor(const FloorFacts& facts,
     floor_bytes_ += page.size();
   });
   if (!fill(floor)) {
+    floor_pages_.reset();
     return;
   }
   floor.finish();
