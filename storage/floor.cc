@@ -184,6 +184,7 @@ void Floor::read_page(const Child& found, Page& page, IoCounters& counters) cons
   file_.settle(counters);
   page.number_ = found.number;
   page.first_ = found.entry.first;
+  page.end_ = found.end;
 }
 
 /// Whether all heights are such as numbers of the file's type can be.
@@ -213,14 +214,10 @@ void Floor::decode(const Page& page, std::size_t i, std::uint32_t column, std::u
 void Floor::read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
                  IoCounters& counters) const {
   const std::uint64_t key = FloorShape::key(column, row);
-  std::optional<std::size_t> i;
-  if (page.number_ != UINT64_MAX && key >= page.first_) {
-    i = FloorPage(page.bytes_).find(key - page.first_);
-  }
-  if (!i) {
+  if (page.number_ == UINT64_MAX || key < page.first_ || key >= page.end_) {
     read_page(find(key, page.path_, counters), page, counters);
-    i = FloorPage(page.bytes_).find(key - page.first_);
   }
+  const std::optional<std::size_t> i = FloorPage(page.bytes_).find(key - page.first_);
   if (!i) damaged("a tile of heights is on no page");
   decode(page, *i, column, row, tile);
 }

@@ -57,7 +57,7 @@ class Floor {
   class Page {
    private:
     friend class Floor;
-    std::uint64_t number_ = UINT64_MAX, first_ = 0;
+    std::uint64_t number_ = UINT64_MAX, first_ = 0, end_ = 0;  ///< From a key to another.
     std::vector<std::byte> bytes_;
     Path path_;
   };

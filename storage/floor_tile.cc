@@ -224,10 +224,11 @@ void sum_up(FloorTile& tile) noexcept {
   const std::size_t width = tile.width;
   for (std::size_t row = 0; row < tile.height; ++row) {
     OrderedHeight* const here = tile.heights.data() + row * width;
+    const OrderedHeight* const above = row > 0 ? here - width : nullptr;
     OrderedHeight along = 0;
     for (std::size_t x = 0; x < width; ++x) {
       along += here[x];
-      here[x] = along + (row > 0 ? here[x - width] : 0);
+      here[x] = along + (above != nullptr ? above[x] : 0);
     }
   }
 }
