@@ -36,6 +36,18 @@ class LargeErrors final : public AttributePredicate {
   }
 };
 
+/// The heights of a raster.
+void use_floor(const StoreFile& store) {
+  const Floor* const floor = store.floor();
+  if (floor == nullptr) {
+    return;
+  }
+  IoCounters counters;
+  floor->visit(
+      {0, 0, 0, 0}, [](const Floor::TileBounds&) { return true; },
+      [](const Floor::TileBounds&, const FloorTile&) { return true; }, counters);
+}
+
 void use(const std::string& path, PageAccess access) {
   const auto store = StoreFile::open(path, access);
   IoCounters counters;
@@ -63,18 +75,6 @@ void use(const std::string& path, PageAccess access) {
     } catch (const Error&) {
     }
   }
-}
-
-/// The heights of a raster.
-void use_floor(const StoreFile& store) {
-  const Floor* const floor = store.floor();
-  if (floor == nullptr) {
-    return;
-  }
-  IoCounters counters;
-  floor->visit(
-      {0, 0, 0, 0}, [](const Floor::TileBounds&) { return true; },
-      [](const Floor::TileBounds&, const FloorTile&) { return true; }, counters);
 }
 
 /// As a file that lies elsewhere: by its directory.
