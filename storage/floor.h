@@ -10,10 +10,15 @@
 #include <span>
 #include <vector>
 
+#include "engine/geometry/box.h"
+#include "engine/geometry/height.h"
+#include "engine/geometry/interval.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/readable_file.h"
 #include "storage/floor_facts.h"
+#include "storage/floor_page.h"
 #include "storage/floor_tile.h"
+#include "storage/merit.h"
 #include "storage/store_facts.h"
 
 namespace ptin {
@@ -32,34 +37,23 @@ struct FloorPlace {
 };
 
 /// Reads pages of heights, and verifies each before its tiles are seen: an entry of a node holds the
-/// checksum of what it describes, and the section table that of the root. The root stays in memory;
-/// as in the index, a node counts whenever its entries are looked at. Threads: const functions may be
-/// called at once.
+/// checksum of what it describes, and the section table that of the root. The root stays in memory; as in
+/// the index, a node counts whenever its entries are looked at. Threads: const functions may be called at
+/// once.
 class Floor {
-  /// An entry of a node: what it describes, and where the keys below that end.
-  struct Child {
-    std::uint64_t number;  ///< Of a node within its level, or of a page.
-    std::uint64_t end;
-    layout::FloorEntry entry;
-  };
-  /// The nodes on the way to a page, which are not read again for the next page below them.
-  struct Path {
-    struct Step {
-      Child at;
-      layout::FloorNode node;
-    };
-    bool is_begun = false;    ///< The root was looked at.
-    std::vector<Step> below;  ///< Below the root, down to a leaf.
-  };
-
  public:
-  /// What was read last, for tiles that lie there, too. A value of its caller's, for one file.
+  /// A page that was read last, for tiles that lie on it, too. A value of its caller's.
   class Page {
+   public:
+    [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
+
    private:
     friend class Floor;
+    [[nodiscard]] FloorPageView view() const noexcept {
+      return FloorPageView(std::span(bytes_).first(layout::kFloorPageBytes));
+    }
     std::uint64_t number_ = UINT64_MAX, first_ = 0, end_ = 0;  ///< From a key to another.
     std::vector<std::byte> bytes_;
-    Path path_;
   };
 
   /// Reads the root.
@@ -72,35 +66,54 @@ class Floor {
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] std::uint64_t pages() const noexcept { return tree_.pages(); }
 
-  /// Tiles from a column and a row to others, these too.
-  struct Tiles {
-    std::uint32_t first_column, first_row, last_column, last_row;
+  /// What is known of samples before they are read.
+  struct Bounds {
+    GridBox box;     ///< Of their places, grid units.
+    Interval codes;  ///< Of their heights, not nearer; empty: all are void.
   };
-  /// A tile, and what is known of it before its samples are decoded.
-  struct TileBounds {
+  struct TileAt {
     std::uint32_t column, row;
-    OrderedHeight least, greatest;  ///< Of its samples, not nearer; least > greatest: all are void.
+    Bounds bounds;
   };
+  /// Takes a tile that is there for the call.
+  using TakeTile = std::function<bool(const TileAt&, const FloorTile&)>;
 
-  /// Reads some tiles along the curve, so that each page is read once.
-  /// @param wants  Whether a tile is to be read. Of a whole page it is asked by the page's heights, for
-  ///               each of its tiles until one is wanted: so it may have no state.
-  /// @param take   Takes each tile that is wanted. The tile is there for the call. False ends it.
+  /// Reads tiles along the curve, so that each page is read once.
+  /// @param wants  Whether samples within these bounds are wanted: true for wider bounds where it is for
+  ///               some within them.
+  /// @param take   Takes each tile that is wanted; false ends it.
   /// @return False when `take` ended it.
-  /// REQUIRES: the tiles are those of the shape.
   /// @throws Error corruption, io_error; what the functions throw
-  /// Cost: the nodes and pages of these tiles. Pages of about 8192 tiles at a time are announced
-  /// together; they take 1 MiB of memory at most.
-  bool visit(const Tiles& tiles, const std::function<bool(const TileBounds&)>& wants,
-             const std::function<bool(const TileBounds&, const FloorTile&)>& take,
+  /// Cost: the nodes and pages that hold such tiles, of a far file a round for each level of nodes and one
+  /// for the pages.
+  bool visit(const std::function<bool(const Bounds&)>& wants, const TakeTile& take,
              IoCounters& counters) const;
+
+  /// The caller's part of a best-first search.
+  class BestVisitor {
+   public:
+    BestVisitor() = default;
+    BestVisitor(const BestVisitor&) = delete;
+    BestVisitor& operator=(const BestVisitor&) = delete;
+    virtual ~BestVisitor() = default;
+    /// An upper bound of the merit of all within these bounds: wider ones have no smaller merit.
+    /// A value of -infinity: nothing there is wanted.
+    [[nodiscard]] virtual Merit bound(const Bounds& bounds) const = 0;
+    /// Whether all that is wanted will probably be visited: of a far file it is announced together.
+    [[nodiscard]] virtual bool wants_all() const { return false; }
+    /// Takes a tile. Returns the cut-off: what is below it is not read.
+    /// @param left  No merit of what was not visited yet is above it.
+    virtual Merit visit(const TileAt& at, const FloorTile& tile, Merit left) = 0;
+  };
+  /// Reads tiles by pages of falling merit until the cut-off is above all that is left.
+  /// @throws Error corruption, io_error; what the visitor throws
+  void visit_best_first(BestVisitor& visitor, Merit cut_off, IoCounters& counters) const;
 
   /// Reads a tile.
   /// @param page  That of an earlier call is not read again where it holds this tile.
   /// REQUIRES: there is such a column and row of tiles.
   /// @throws Error corruption, io_error
-  /// Cost: a node a level and a page, where `page` has not those of the tile; about 3 us where the
-  /// system has them, and 1 ns a sample.
+  /// Cost: a node a level and a page, about 3 us where the system has them; 1 ns a sample.
   void read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
             IoCounters& counters) const;
 
@@ -112,23 +125,34 @@ class Floor {
     std::uint64_t position = UINT64_MAX;
     std::unique_ptr<layout::FloorNode> node;
   };
-  [[nodiscard]] layout::FloorNode read_node(std::size_t level, std::uint64_t number,
-                                            std::uint64_t checksum) const;
-  [[nodiscard]] layout::FloorNode node(std::size_t level, const Child& at,
-                                       IoCounters& counters) const;
-  [[nodiscard]] Child child_with(std::uint64_t key, const layout::FloorNode& node,
-                                 const Child& at) const;
+
+  /// A node or a page as the node above it describes it.
+  struct Found {
+    std::uint64_t number;  ///< On its level.
+    std::uint64_t end;     ///< Key of the first tile of the next one.
+    layout::FloorEntry entry;
+    std::size_t level;  ///< That of pages is tree_.levels().
+    Merit merit = kNoMerit;
+  };
+  [[nodiscard]] layout::FloorNode read_node(const Found& found) const;
+  [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
+  using Bound = std::function<Merit(const Bounds&)>;
+  [[nodiscard]] Found root() const noexcept;
   /// The page that holds a key.
-  [[nodiscard]] Child find(std::uint64_t key, Path& path, IoCounters& counters) const;
-  void read_page(const Child& found, Page& page, IoCounters& counters) const;
-  /// The pages that hold wanted tiles, ascending, and announced.
-  [[nodiscard]] std::vector<Child> pages_of(std::span<const std::uint64_t> keys,
-                                            const std::function<bool(const TileBounds&)>& wants,
-                                            Path& path, IoCounters& counters) const;
-  bool visit_page(const Page& page, std::span<const std::uint64_t> keys,
-                  const std::function<bool(const TileBounds&)>& wants,
-                  const std::function<bool(const TileBounds&, const FloorTile&)>& take,
-                  FloorTile& tile) const;
+  [[nodiscard]] Found find(std::uint64_t key, IoCounters& counters) const;
+  /// What of a node's entries is not below the cut-off, along the curve.
+  void expand(const Found& node, const Bound& bound, Merit cut_off, std::vector<Found>& below,
+              IoCounters& counters) const;
+  /// The pages that are not below the cut-off, along the curve.
+  [[nodiscard]] std::vector<Found> find_pages(const Bound& bound, Merit cut_off,
+                                              IoCounters& counters) const;
+  void announce(const std::vector<Found>& found, IoCounters& counters) const;
+  [[nodiscard]] Bounds bounds_of(const TileRange& tiles, OrderedHeight least,
+                                 OrderedHeight greatest) const;
+  void read_page(const Found& found, Page& page, IoCounters& counters) const;
+  /// Visits the tiles of a page; false when `visit` ended it.
+  template <class Visit>
+  bool visit_tiles(const Page& page, const Visit& visit) const;
   void decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
               FloorTile& tile) const;
   [[nodiscard]] bool has_heights(const FloorTile& tile) const;
@@ -136,9 +160,10 @@ class Floor {
 
   const ReadableFile& file_;
   FloorPlace place_;
-  layout::FloorNode root_;
   FloorFacts facts_;
   FloorTree tree_{1};
+  layout::FloorNode root_{};
+  HeightEncoding heights_;
   FloorNumbers numbers_;
   mutable std::vector<Slot> slots_{kSlots};
 };

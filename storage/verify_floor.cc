@@ -164,14 +164,14 @@ class FloorVerifier {
     check_stop_();
     const std::span<std::byte> bytes = std::span(page_).first(layout::kFloorPageBytes);
     file_.read_at(bytes, place_.offset_of_page(number));
-    const FloorPage page(page_);
+    const FloorPageView page(bytes);
     const char* fault = checksum_of(bytes) != entry.checksum
                             ? "the page does not match the checksum in its node"
                             : page.fault();
     FloorBounds all;
     if (fault == nullptr) again_.begin(number, page_);
     for (std::size_t i = 0; fault == nullptr && i < page.tiles(); ++i) {
-      fault = look_at_tile(entry.first + page.key(i), page.bytes(i), all);
+      fault = look_at_tile(entry.first + page.key(i), page.tile(i), all);
     }
     if (fault != nullptr) {
       miss(fault, page_name(number));

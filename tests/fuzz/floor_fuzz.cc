@@ -30,7 +30,6 @@ namespace {
 using namespace ptin;
 
 constexpr std::uint64_t kMostPages = 400;  // two levels of nodes
-constexpr std::uint64_t kMostTiles = 20000;
 
 using Page = std::array<std::byte, layout::kFloorPageBytes>;
 
@@ -110,20 +109,15 @@ void pack_again(const FloorTile& tile) {
 
 void use(const Floor& floor) {
   const FloorShape& shape = floor.facts().shape;
-  const std::uint32_t last_column =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(shape.columns(), kMostTiles / 8)) - 1;
-  const std::uint32_t last_row =
-      static_cast<std::uint32_t>(std::min<std::uint64_t>(shape.rows(), 8)) - 1;
   std::map<std::pair<std::uint32_t, std::uint32_t>, FloorTile> seen;
   IoCounters counters;
   try {
-    floor.visit(
-        {0, 0, last_column, last_row}, [](const Floor::TileBounds&) { return true; },
-        [&](const Floor::TileBounds& at, const FloorTile& tile) {
-          require(seen.emplace(std::pair(at.column, at.row), tile).second);
-          return seen.size() < 500;
-        },
-        counters);
+    floor.visit([](const Floor::Bounds&) { return true; },
+                [&](const Floor::TileAt& at, const FloorTile& tile) {
+                  require(seen.emplace(std::pair(at.column, at.row), tile).second);
+                  return seen.size() < 500;
+                },
+                counters);
   } catch (const Error&) {
   }
   Floor::Page page;

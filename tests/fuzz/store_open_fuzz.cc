@@ -43,9 +43,8 @@ void use_floor(const StoreFile& store) {
     return;
   }
   IoCounters counters;
-  floor->visit(
-      {0, 0, 0, 0}, [](const Floor::TileBounds&) { return true; },
-      [](const Floor::TileBounds&, const FloorTile&) { return true; }, counters);
+  floor->visit([](const Floor::Bounds&) { return true; },
+               [](const Floor::TileAt&, const FloorTile&) { return true; }, counters);
 }
 
 void use(const std::string& path, PageAccess access) {

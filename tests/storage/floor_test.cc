@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -132,6 +133,136 @@ TEST_F(FloorStore, ManyPagesHaveNodesAboveNodes) {
   expect_all_tiles(*store, raster);
 }
 
+/// Samples of a window: whether one has a height, and how high that is.
+struct Truth {
+  bool has_height = false;
+  double lowest = 0, highest = 0;  ///< Codes.
+};
+Truth truth_of(const Raster& raster, const GridBox& box) {
+  Truth truth;
+  for (std::int32_t y = box.min_y; y <= box.max_y; ++y) {
+    for (std::int32_t x = box.min_x; x <= box.max_x; ++x) {
+      const auto at_x = static_cast<std::uint32_t>(x), at_y = static_cast<std::uint32_t>(y);
+      if (raster.is_void(at_x, at_y)) continue;
+      const double code = static_cast<std::int32_t>(raster.at(at_x, at_y) ^ 0x80000000U);
+      truth.lowest = truth.has_height ? std::min(truth.lowest, code) : code;
+      truth.highest = truth.has_height ? std::max(truth.highest, code) : code;
+      truth.has_height = true;
+    }
+  }
+  return truth;
+}
+
+GridBox random_box(std::mt19937& random, std::uint32_t width, std::uint32_t height) {
+  const auto two = [&](std::uint32_t all) {
+    const auto a = static_cast<std::int32_t>(random() % all);
+    const auto b = static_cast<std::int32_t>(random() % all);
+    return std::pair{std::min(a, b), std::max(a, b)};
+  };
+  const auto [min_x, max_x] = two(width);
+  const auto [min_y, max_y] = two(height);
+  return {min_x, min_y, max_x, max_y};
+}
+
+TEST_F(FloorStore, AVisitTakesTheTilesOfAWindowAndOfNoOtherPages) {
+  std::mt19937 random(20261128);
+  for (const Raster& raster : {Raster{700, 900}, {34, 33}, {1, 200}, {1300, 70}}) {
+    const auto store = StoreFile::open(written(raster, 4));
+    const Floor& floor = *store->floor();
+    for (int turn = 0; turn < 30; ++turn) {
+      const GridBox box = random_box(random, raster.width, raster.height);
+      std::set<Place> expected, seen;
+      for (const Place& at : in_order(floor.facts().shape)) {
+        if (meets(floor.facts().shape.samples_of({at.first, at.second, at.first, at.second}),
+                  box)) {
+          expected.insert(at);
+        }
+      }
+      std::set<std::uint64_t> pages;
+      for (const Place& at : expected) {
+        Floor::Page page;
+        FloorTile tile;
+        IoCounters counters;
+        floor.read(at.first, at.second, page, tile, counters);
+        pages.insert(page.number());
+      }
+      IoCounters counters;
+      floor.visit([&](const Floor::Bounds& b) { return meets(b.box, box); },
+                  [&](const Floor::TileAt& at, const FloorTile&) {
+                    EXPECT_TRUE(seen.emplace(at.column, at.row).second) << "a tile came twice";
+                    return true;
+                  },
+                  counters);
+      ASSERT_EQ(seen, expected);
+      ASSERT_EQ(counters.pages, pages.size());
+    }
+  }
+}
+
+TEST_F(FloorStore, BoundsHoldWhatLiesWithin) {
+  const Raster raster{700, 900};
+  const auto store = StoreFile::open(written(raster, 4));
+  IoCounters counters;
+  store->floor()->visit(
+      [&](const Floor::Bounds& b) {
+        const Truth truth = truth_of(raster, b.box);
+        EXPECT_FALSE(truth.has_height && is_empty(b.codes));
+        EXPECT_TRUE(!truth.has_height ||
+                    (b.codes.lo <= truth.lowest && truth.highest <= b.codes.hi));
+        return true;
+      },
+      [](const Floor::TileAt&, const FloorTile&) { return true; }, counters);
+}
+
+/// Looks for the highest sample of a window.
+class HighestSample final : public Floor::BestVisitor {
+ public:
+  HighestSample(const Raster& raster, const GridBox& box, bool wants_all)
+      : raster_(raster), box_(box), wants_all_(wants_all) {}
+  [[nodiscard]] Merit bound(const Floor::Bounds& b) const override {
+    return meets(b.box, box_) ? Merit{b.codes.hi} : kNoMerit;
+  }
+  [[nodiscard]] bool wants_all() const override { return wants_all_; }
+  Merit visit(const Floor::TileAt& at, const FloorTile&, Merit left) override {
+    EXPECT_LE(at.bounds.codes.hi, left.value);
+    EXPECT_LE(left.value, left_);
+    left_ = left.value;
+    const GridBox& b = at.bounds.box;
+    const Truth truth =
+        truth_of(raster_, {std::max(b.min_x, box_.min_x), std::max(b.min_y, box_.min_y),
+                           std::min(b.max_x, box_.max_x), std::min(b.max_y, box_.max_y)});
+    if (truth.has_height) {
+      found = found.has_height ? Truth{true, 0, std::max(found.highest, truth.highest)} : truth;
+    }
+    return {found.has_height ? found.highest : -kInfinity};
+  }
+  Truth found;
+
+ private:
+  const Raster& raster_;
+  GridBox box_;
+  bool wants_all_;
+  double left_ = kInfinity;
+};
+
+TEST_F(FloorStore, ABestFirstSearchFindsTheHighestSampleInFewPages) {
+  const Raster raster{1001, 1001};
+  const auto store = StoreFile::open(written(raster, 4));
+  std::mt19937 random(20261128);
+  for (int turn = 0; turn < 60; ++turn) {
+    const GridBox box = random_box(random, raster.width, raster.height);
+    HighestSample search(raster, box, turn % 2 == 0);
+    IoCounters counters;
+    store->floor()->visit_best_first(search, {-kInfinity}, counters);
+    const Truth truth = truth_of(raster, box);
+    ASSERT_EQ(search.found.has_height, truth.has_height);
+    if (truth.has_height) {
+      ASSERT_EQ(search.found.highest, truth.highest);
+    }
+    EXPECT_LE(counters.pages, store->floor()->pages() / 4) << "most pages are too low";
+  }
+}
+
 TEST_F(FloorStore, ATileIsOnePageAndANode) {
   const auto store = StoreFile::open(written({700, 900}));
   Floor::Page page;
@@ -139,38 +270,9 @@ TEST_F(FloorStore, ATileIsOnePageAndANode) {
   IoCounters counters;
   store->floor()->read(3, 4, page, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
-  EXPECT_EQ(counters.index_nodes, 1U);
+  EXPECT_EQ(counters.index_nodes, 1U) << "the root counts, as that of the index does";
   store->floor()->read(3, 4, page, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
-}
-
-TEST_F(FloorStore, AWindowReadsItsPagesAndNodesOnce) {
-  const Raster raster{1500, 1500};
-  const auto store = StoreFile::open(written(raster, 4));
-  const Floor& floor = *store->floor();
-  ASSERT_GT(floor.facts().shape.tiles(), 8192U) << "that are looked for together";
-  const Floor::Tiles windows[] = {{0, 0, 93, 93}, {60, 60, 67, 70}, {5, 90, 5, 90}};
-  for (const Floor::Tiles& w : windows) {
-    std::set<Place> places;
-    std::uint64_t last = 0;
-    IoCounters counters;
-    floor.visit(
-        w, [](const Floor::TileBounds&) { return true; },
-        [&](const Floor::TileBounds& at, const FloorTile& tile) {
-          const std::uint64_t key = FloorShape::key(at.column, at.row);
-          EXPECT_TRUE(places.empty() || key > last) << "along the curve";
-          last = key;
-          EXPECT_EQ(tile.heights.front(), raster.is_void(at.column * 16, at.row * 16)
-                                              ? tile.heights.front()
-                                              : raster.at(at.column * 16, at.row * 16));
-          return places.emplace(at.column, at.row).second;
-        },
-        counters);
-    EXPECT_EQ(places.size(),
-              std::size_t{w.last_column - w.first_column + 1} * (w.last_row - w.first_row + 1));
-    EXPECT_LE(counters.pages, floor.pages());
-    EXPECT_LE(counters.index_nodes, 1 + floor.pages() / layout::kFloorFanOut + 1);
-  }
 }
 
 TEST_F(FloorStore, SameTilesAreSameBytes) {

@@ -92,12 +92,14 @@ TEST(FloorTile, VoidsOfAllKindsComeBack) {
                      : std::uniform_real_distribution<>(0, 1)(random) < share;
       }
       for (std::size_t i = 0; i < tile.samples(); ++i) {
-        if (tile.is_void[i] == 0) continue;
+        if (tile.is_void[i] == 0) {
+          continue;
+        }
         if (random() % 5 == 0) {
           tile.lone.push_back(
-              {static_cast<std::uint16_t>(i), static_cast<OrderedHeight>(random())});
+              {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(random())});
         }
-        tile.heights[i] = static_cast<OrderedHeight>(random());  // of no account
+        tile.heights[i] = static_cast<std::uint32_t>(random());  // of no account
       }
       expect_back(tile, "share " + std::to_string(share));
     }

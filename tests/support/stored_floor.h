@@ -29,15 +29,13 @@ inline StoredFloor floor_of(const StoreFile& store) {
   StoredFloor result;
   const Floor& floor = *store.floor();
   result.facts = floor.facts();
-  const FloorShape& shape = result.facts.shape;
   IoCounters counters;
-  floor.visit(
-      {0, 0, shape.columns() - 1, shape.rows() - 1}, [](const Floor::TileBounds&) { return true; },
-      [&](const Floor::TileBounds& at, const FloorTile& tile) {
-        result.tiles.emplace(FloorShape::key(at.column, at.row), tile);
-        return true;
-      },
-      counters);
+  floor.visit([](const Floor::Bounds&) { return true; },
+              [&](const Floor::TileAt& at, const FloorTile& tile) {
+                result.tiles.emplace(FloorShape::key(at.column, at.row), tile);
+                return true;
+              },
+              counters);
   return result;
 }
 

@@ -10,6 +10,8 @@
 
 #include "engine/geometry/box.h"
 #include "engine/query/living/living_triangle.h"
+#include "engine/query/living/raster_square.h"
+#include "engine/query/select/accounting.h"
 #include "engine/query/shape/spot.h"
 #include "storage/floor.h"
 
@@ -21,6 +23,8 @@ struct FloorWish {
   /// Whether a box whose heights (codes; empty: all void) lie within an interval may hold what is wanted;
   /// none: it may.
   std::function<bool(const GridBox&, const Interval&)> may_hold;
+  /// Takes the cells of a tile before they are triangles; false, or none: they come one by one.
+  std::function<bool(const RasterSquare&)> take_cells;
 };
 
 /// How many samples the tiles have whose cells meet a box, about.
@@ -34,7 +38,33 @@ struct FloorWish {
 /// Cost: the tiles of the box, 1 ns a sample and 20 ns a cell.
 bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
                  const std::function<bool(std::size_t)>& begin,
-                 const std::function<void(const LivingTriangle&)>& take, IoCounters& counters);
+                 const std::function<void(const LivingTriangle&)>& take, QueryCost& cost);
+
+/// The caller's part of a best-first search.
+class BestCellVisitor {
+ public:
+  BestCellVisitor() = default;
+  BestCellVisitor(const BestCellVisitor&) = delete;
+  BestCellVisitor& operator=(const BestCellVisitor&) = delete;
+  virtual ~BestCellVisitor() = default;
+  /// An upper bound of the merit of triangles in a box whose heights lie within an interval (codes; empty:
+  /// all void). Larger ones have no smaller merit; a value of -infinity: nothing there is wanted.
+  [[nodiscard]] virtual Merit bound_of_cells(const GridBox& box, const Interval& codes) const = 0;
+  /// Whether all that is wanted will probably be visited: of a far file it is announced together.
+  [[nodiscard]] virtual bool wants_all_cells() const { return false; }
+  /// Called before the triangles of a tile. False: they are left out, and the search ends.
+  /// @param box   That of the tile.
+  /// @param left  No merit of what was not visited yet is above it.
+  virtual bool begin_cells(const GridBox& box, Merit left) = 0;
+  virtual void take_cell(const LivingTriangle& t) = 0;
+  /// Called after them. Returns the cut-off: what is below it is not read.
+  virtual Merit end_cells() = 0;
+};
+
+/// Visits the triangles of the tiles of pages by falling merit; those whose box meets `box`.
+/// @throws Error corruption, io_error; what the visitor throws
+void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
+                            BestCellVisitor& visitor, Merit cut_off, QueryCost& cost);
 
 /// The triangles of the full TIN at spots, one after the other. Threads: one owner.
 class FloorAtSpots {
@@ -47,8 +77,7 @@ class FloorAtSpots {
   /// side, four on a sample, fewer on the border. Beside the raster there is none.
   /// @throws Error corruption, io_error
   /// Cost: the tiles of these cells, where they are not those of the spot before.
-  void visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,
-             IoCounters& counters);
+  void visit(Spot spot, const std::function<void(const LivingTriangle&)>& take, QueryCost& cost);
 
  private:
   /// A tile that was read: neighbours have different places here.
@@ -56,7 +85,7 @@ class FloorAtSpots {
     std::uint32_t column = UINT32_MAX, row = UINT32_MAX;
     FloorTile tile;
   };
-  [[nodiscard]] const Kept& tile_at(std::uint32_t column, std::uint32_t row, IoCounters& counters);
+  [[nodiscard]] const Kept& tile_at(std::uint32_t column, std::uint32_t row, QueryCost& cost);
 
   const Floor& floor_;
   HeightEncoding heights_;

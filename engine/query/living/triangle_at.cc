@@ -305,7 +305,7 @@ void find_on_floor(const StoreFile& store, const Floor& floor, std::span<const S
   for (std::size_t i = 0; i < spots.size(); ++i) {
     context.check_stop();
     triangles.visit(
-        spots[i], [&](const LivingTriangle& t) { offer(t, spots[i], found[i]); }, context.cost.io);
+        spots[i], [&](const LivingTriangle& t) { offer(t, spots[i], found[i]); }, context.cost);
   }
 }
 
@@ -314,8 +314,7 @@ void find_on_floor(const StoreFile& store, const Floor& floor, std::span<const S
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
-  const bool is_full = detail.is_by_error() && detail.tolerance() < 0;
-  if (const Floor* const floor = is_full ? terrain.floor() : nullptr) {
+  if (const Floor* const floor = detail.is_full() ? terrain.floor() : nullptr) {
     find_on_floor(terrain.store(), *floor, spots, found, context);
   } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);

@@ -67,29 +67,22 @@ std::optional<VerifyFault> FloorCheck::read(IoCounters& counters) {
   heights_.assign(all, 0);
   state_.assign(all, Sample::kUnread);
   found_.assign(all, 0);
-  const FloorShape& shape = floor_.facts().shape;
-  const auto tile = [&](std::int32_t sample, std::uint32_t tiles) {
-    return std::min(static_cast<std::uint32_t>(sample) >> shape.side_log2, tiles - 1);
-  };
-  const Floor::Tiles tiles{
-      tile(samples_.min_x, shape.columns()), tile(samples_.min_y, shape.rows()),
-      tile(samples_.max_x, shape.columns()), tile(samples_.max_y, shape.rows())};
   std::optional<VerifyFault> fault;
-  floor_.visit(
-      tiles, [](const Floor::TileBounds&) { return true; },
-      [&](const Floor::TileBounds& at, const FloorTile& t) {
-        if (put(at, t)) return true;
-        fault = {"the tile in column " + std::to_string(at.column) + ", row " +
-                     std::to_string(at.row) + " differs from one beside it in a sample of both",
-                 "the heights of the raster"};
-        return false;
-      },
-      counters);
+  floor_.visit([&](const Floor::Bounds& b) { return meets(b.box, samples_); },
+               [&](const Floor::TileAt& at, const FloorTile& t) {
+                 if (put(at, t)) return true;
+                 fault = {"the tile in column " + std::to_string(at.column) + ", row " +
+                              std::to_string(at.row) +
+                              " differs from one beside it in a sample of both",
+                          "the heights of the raster"};
+                 return false;
+               },
+               counters);
   return fault;
 }
 
 /// Copies the samples of a tile that lie in the box. False: one is there already, and differs.
-bool FloorCheck::put(const Floor::TileBounds& at, const FloorTile& tile) {
+bool FloorCheck::put(const Floor::TileAt& at, const FloorTile& tile) {
   const FloorShape& shape = floor_.facts().shape;
   const FloorNumbers& numbers = floor_.numbers();
   const std::int64_t left = shape.first_of(at.column), low = shape.first_of(at.row);

@@ -40,7 +40,7 @@ class FloorCheck {
  private:
   enum class Sample : std::uint8_t { kUnread, kVoid, kLone, kHeight };
   [[nodiscard]] std::optional<VerifyFault> read(IoCounters& counters);
-  [[nodiscard]] bool put(const Floor::TileBounds& at, const FloorTile& tile);
+  [[nodiscard]] bool put(const Floor::TileAt& at, const FloorTile& tile);
   [[nodiscard]] std::size_t place_of(std::int64_t x, std::int64_t y) const noexcept {
     return static_cast<std::size_t>(y - samples_.min_y) * width_ +
            static_cast<std::size_t>(x - samples_.min_x);

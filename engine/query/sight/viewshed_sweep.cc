@@ -16,7 +16,7 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
+constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1 + sizeof(VertexId);
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
@@ -58,6 +58,8 @@ class Viewer {
   void place_pixels();
   void sweep();
   void walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon);
+  [[nodiscard]] std::vector<VertexId> seen_vertices() const;
+  [[nodiscard]] int least_corner(TriangleId t) const noexcept;
   void collect();
   [[nodiscard]] bool sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon);
   [[nodiscard]] std::size_t buckets() const noexcept {
@@ -424,7 +426,6 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
   }
   const auto o = offsets(t);
   double weights[3];
-  double sum = 0;
   Horizon::Side side = Horizon::Side::kBoth;
   for (int i = 0; i < 3; ++i) {
     const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
@@ -439,7 +440,6 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
                                                          : Horizon::Side::kRight;
     }
     weights[i] = w;
-    sum += w;
   }
   if (!is_surface(t) && !holds_surface(tin_, t, weights)) {
     return;
@@ -449,20 +449,55 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     return;
   }
   // The height on the plane of the triangle without curvature, then lowered by the drop at the
-  // point itself.
-  for (std::size_t i = 0; i < 3; ++i) {
+  // point itself. The corner with the least key comes first, whatever mesh the triangle is of: where the
+  // eye is in the plane, the last digit of the sum decides.
+  const auto first = static_cast<std::size_t>(least_corner(t));
+  const std::array<std::size_t, 3> order{first, (first + 1) % 3, (first + 2) % 3};
+  const double sum = weights[order[0]] + weights[order[1]] + weights[order[2]];
+  for (const std::size_t i : order) {
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }
   p.z += request_.target_height - drop(p.x, p.y);
   see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, horizon));
 }
 
-void Viewer::collect() {
+/// The vertices that were looked at, in the order of their keys: a mesh has them in that in which it was
+/// made.
+std::vector<VertexId> Viewer::seen_vertices() const {
+  std::vector<VertexId> seen;
   for (VertexId v = 0; v < seen_.size(); ++v) {
     if (v % kStopInterval == 0) {
       context_.check_stop();
     }
-    if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
+    if (seen_[v] != Sight::kNothing) {
+      seen.push_back(v);
+    }
+  }
+  const auto is_before = [&](VertexId a, VertexId b) {
+    return key_of(tin_.position(a)) < key_of(tin_.position(b));
+  };
+  if (request_.list_vertices && !std::is_sorted(seen.begin(), seen.end(), is_before)) {
+    std::sort(seen.begin(), seen.end(), is_before);
+  }
+  return seen;
+}
+
+/// The corner of a triangle with the least key.
+int Viewer::least_corner(TriangleId t) const noexcept {
+  int least = 0;
+  for (const int i : {1, 2}) {
+    const auto& v = tin_.triangles[t].v;
+    if (key_of(tin_.position(v[i])) < key_of(tin_.position(v[least]))) least = i;
+  }
+  return least;
+}
+
+void Viewer::collect() {
+  for (const VertexId v : seen_vertices()) {
+    if (v % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    if (!touches_surface(tin_, v)) {
       continue;
     }
     const Offset& o = offsets_[v];
