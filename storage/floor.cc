@@ -2,6 +2,7 @@
 #include "storage/floor.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "engine/error.h"
@@ -10,53 +11,74 @@
 
 namespace ptin {
 
-Floor::Floor(const ReadableFile& file, const FloorPlace& place, const HeightEncoding& heights)
-    : file_(file), place_(place), heights_(heights), numbers_(heights, 0.0) {
-  IoCounters counters;
-  root_ = node(0, 0, place.root_checksum, counters);
-  std::uint64_t pages = 0;
-  if (const char* const fault = take_facts(root_, facts_, pages)) damaged(fault);
-  tree_ = FloorTree(pages);
-  if (place.nodes.bytes != tree_.total_nodes() * layout::kNodeBytes ||
-      place.pages.bytes != pages * layout::kFloorPageBytes) {
-    damaged("the sections of heights have not the length that their pages ask for");
+namespace {
+
+/// Of a far file the root comes together with the first nodes below it: in most files with all.
+void announce_nodes(const ReadableFile& file, const FloorPlace& place) {
+  constexpr std::uint64_t kMostBytes = 15 * layout::kNodeBytes;
+  if (!file.is_far()) return;
+  const std::array ranges{ByteRange{place.root, layout::kNodeBytes},
+                          ByteRange{place.nodes.offset, std::min(place.nodes.bytes, kMostBytes)}};
+  file.will_need(ranges);
+}
+
+}  // namespace
+
+Floor::Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts& store)
+    : file_(file), place_(place), heights_(store.heights), numbers_(store.heights, 0.0) {
+  announce_nodes(file_, place_);
+  file_.read_at(std::as_writable_bytes(std::span(&root_, 1)), place_.root);
+  if (checksum_of_object(root_) != place_.root_checksum) {
+    damaged("the root above the heights does not match its checksum; the file is damaged");
   }
-  numbers_ = FloorNumbers(heights, facts_.step);
+  std::uint64_t pages = 0;
+  if (const char* const fault = take_facts(root_, store, facts_, pages)) damaged(fault);
+  if (place_.pages.bytes / layout::kFloorPageBytes != pages) {
+    damaged("the section of heights has not the length that its pages ask for");
+  }
+  tree_ = FloorTree(pages);
+  if (place_.nodes.bytes / layout::kNodeBytes != tree_.total_nodes() - 1) {
+    damaged("the nodes above the heights are not as many as their pages ask for");
+  }
+  numbers_ = FloorNumbers(store.heights, facts_.step);
+  if (const char* const fault = fault_in(root_, tree_.children(0, 0))) damaged(fault);
 }
 
 void Floor::damaged(const char* what) const {
   throw Error(ErrorCode::corruption, what, file_.path());
 }
 
-layout::FloorNode Floor::node(std::size_t level, std::uint64_t number, std::uint64_t checksum,
-                              IoCounters& counters) const {
-  const std::uint64_t position = tree_.position(level, number);
-  if (position == 0 && root_.entries > 0) return root_;
-  Slot& slot = slots_[position % kSlots];
-  ++counters.index_nodes;
-  counters.bytes_read += layout::kNodeBytes;
-  {
-    const std::lock_guard lock(slot.lock);
-    if (slot.position == position) return slot.node;
-  }
-  layout::FloorNode read{};
-  file_.read_at(std::as_writable_bytes(std::span(&read, 1)),
-                place_.nodes.offset + position * layout::kNodeBytes);
-  if (checksum_of_object(read) != checksum) {
+layout::FloorNode Floor::read_node(const Found& found) const {
+  layout::FloorNode node{};
+  file_.read_at(std::as_writable_bytes(std::span(&node, 1)),
+                place_.offset_of_node(tree_.position(found.level, found.number)));
+  if (checksum_of_object(node) != found.entry.checksum) {
     damaged("a node above the heights does not match its checksum; the file is damaged");
   }
-  if (read.entries == 0 || read.entries > layout::kFloorFanOut) {
-    damaged("a node above the heights has too many entries, or none");
+  const std::uint32_t entries = tree_.children(found.level, found.number);
+  if (const char* const fault = fault_in(node, entries)) damaged(fault);
+  if (node.entry[0].first != found.entry.first || node.entry[entries - 1].first >= found.end) {
+    damaged("the entries of a node above the heights are not those of its parent's keys");
   }
-  const auto is_not_before = [](const layout::FloorEntry& a, const layout::FloorEntry& b) {
-    return a.first >= b.first;
-  };
-  const auto end = read.entry.begin() + read.entries;
-  if (std::adjacent_find(read.entry.begin(), end, is_not_before) != end) {
-    damaged("the entries of a node above the heights are not in order");
+  return node;
+}
+
+layout::FloorNode Floor::node(const Found& found, IoCounters& counters) const {
+  ++counters.index_nodes;
+  counters.bytes_read += layout::kNodeBytes;
+  const std::uint64_t position = tree_.position(found.level, found.number);
+  if (position == 0) return root_;
+  Slot& slot = slots_[position % kSlots];
+  {
+    const std::lock_guard lock(slot.lock);
+    if (slot.position == position) return *slot.node;
   }
+  const layout::FloorNode read = read_node(found);
+  file_.settle(counters);
   const std::lock_guard lock(slot.lock);
-  slot.node = read;
+  slot.position = UINT64_MAX;  // where there is no memory, it holds none
+  if (slot.node == nullptr) slot.node = std::make_unique<layout::FloorNode>();
+  *slot.node = read;
   slot.position = position;
   return read;
 }
@@ -67,22 +89,17 @@ Floor::Found Floor::root() const noexcept {
 
 Floor::Found Floor::find(std::uint64_t key, IoCounters& counters) const {
   Found found = root();
-  for (std::size_t level = 0; level < tree_.levels(); ++level) {
-    const layout::FloorNode here = node(level, found.number, found.entry.checksum, counters);
+  while (found.level < tree_.levels()) {
+    const layout::FloorNode here = node(found, counters);
     const auto end = here.entry.begin() + here.entries;
     const auto after =
         std::upper_bound(here.entry.begin(), end, key,
                          [](std::uint64_t k, const layout::FloorEntry& e) { return k < e.first; });
     if (after == here.entry.begin()) damaged("a tile of heights comes before all pages");
-    if (after != end) found.end = after->first;
-    found.entry = *(after - 1);
-    found.number = found.number * layout::kFloorFanOut +
-                   static_cast<std::uint64_t>(after - 1 - here.entry.begin());
-    if (found.number >= tree_.entries(level)) {
-      damaged("a node above the heights has too many entries");
-    }
+    found = {found.number * layout::kFloorFanOut +
+                 static_cast<std::uint64_t>(after - 1 - here.entry.begin()),
+             after != end ? after->first : found.end, *(after - 1), found.level + 1};
   }
-  found.level = tree_.levels();
   return found;
 }
 
@@ -91,16 +108,36 @@ void Floor::read_page(const Found& found, Page& page, IoCounters& counters) cons
   page.number_ = UINT64_MAX;  // until it is verified
   page.bytes_.resize(layout::kFloorPageBytes + kFloorTileTail);
   const std::span<std::byte> bytes = std::span(page.bytes_).first(layout::kFloorPageBytes);
-  file_.read_at(bytes, place_.pages.offset + found.number * layout::kFloorPageBytes);
+  file_.read_at(bytes, place_.offset_of_page(found.number));
   ++counters.pages;
   ++counters.pages_verified;
   counters.bytes_read += layout::kFloorPageBytes;
   if (checksum_of(bytes) != found.entry.checksum) {
     damaged("a page of heights does not match its checksum; the file is damaged");
   }
-  if (const char* const fault = FloorPageView(bytes).fault()) damaged(fault);
+  const FloorPageView view(bytes);
+  if (const char* const fault = view.fault()) damaged(fault);
+  if (view.key(view.tiles() - 1) >= found.end - found.entry.first) {
+    damaged("a page of heights has tiles of the next one");
+  }
+  file_.settle(counters);
   page.number_ = found.number;
   page.first_ = found.entry.first;
+  page.end_ = found.end;
+}
+
+/// Whether all heights are such as numbers of the file's type can be.
+bool Floor::has_heights(const FloorTile& tile) const {
+  const OrderedHeights all = numbers_.all();
+  if (all.least == 0 && all.most == UINT32_MAX) return true;
+  bool is_so = true;
+  for (std::size_t i = 0; i < tile.samples(); ++i) {
+    const bool is_void = !tile.is_void.empty() && tile.is_void[i] != 0;
+    is_so &= is_void || tile.heights[i] - all.least <= all.most - all.least;
+  }
+  return is_so && std::ranges::all_of(tile.lone, [&](const FloorTile::Lone& lone) {
+           return lone.height - all.least <= all.most - all.least;
+         });
 }
 
 void Floor::decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
@@ -110,14 +147,15 @@ void Floor::decode(const Page& page, std::size_t i, std::uint32_t column, std::u
       read_floor_tile(page.view().tile(i), shape.samples_of(column, shape.width),
                       shape.samples_of(row, shape.height), tile);
   if (fault != nullptr) damaged(fault);
+  if (!has_heights(tile)) damaged("a tile of heights has a height that is no number");
 }
 
 void Floor::read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
                  IoCounters& counters) const {
   const std::uint64_t key = FloorShape::key(column, row);
-  const bool is_there =
-      page.number_ != UINT64_MAX && key >= page.first_ && page.view().tile_with(key - page.first_);
-  if (!is_there) read_page(find(key, counters), page, counters);
+  if (page.number_ == UINT64_MAX || key < page.first_ || key >= page.end_) {
+    read_page(find(key, counters), page, counters);
+  }
   const std::optional<std::size_t> i = page.view().tile_with(key - page.first_);
   if (!i) damaged("a tile of heights is on no page");
   decode(page, *i, column, row, tile);

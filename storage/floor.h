@@ -19,18 +19,27 @@
 #include "storage/floor_page.h"
 #include "storage/floor_tile.h"
 #include "storage/merit.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 
 /// Where the sections lie.
 struct FloorPlace {
-  ByteRange nodes, pages;
-  std::uint64_t root_checksum = 0;
+  std::uint64_t root = 0, root_checksum = 0;  ///< Offset of the root.
+  ByteRange nodes, pages;                     ///< Nodes below the root.
+  /// The offset of a node by FloorTree::position().
+  [[nodiscard]] std::uint64_t offset_of_node(std::uint64_t position) const noexcept {
+    return position == 0 ? root : nodes.offset + (position - 1) * layout::kNodeBytes;
+  }
+  [[nodiscard]] std::uint64_t offset_of_page(std::uint64_t number) const noexcept {
+    return pages.offset + number * layout::kFloorPageBytes;
+  }
 };
 
 /// Reads pages of heights, and verifies each before its tiles are seen: an entry of a node holds the
-/// checksum of what it describes, and the section table that of the root. Threads: const functions may
-/// be called at once.
+/// checksum of what it describes, and the section table that of the root. The root stays in memory; as in
+/// the index, a node counts whenever its entries are looked at. Threads: const functions may be called at
+/// once.
 class Floor {
  public:
   /// A page that was read last, for tiles that lie on it, too. A value of its caller's.
@@ -43,14 +52,15 @@ class Floor {
     [[nodiscard]] FloorPageView view() const noexcept {
       return FloorPageView(std::span(bytes_).first(layout::kFloorPageBytes));
     }
-    std::uint64_t number_ = UINT64_MAX, first_ = 0;
+    std::uint64_t number_ = UINT64_MAX, first_ = 0, end_ = 0;  ///< From a key to another.
     std::vector<std::byte> bytes_;
   };
 
   /// Reads the root.
-  /// @param file  Borrowed.
+  /// @param file   Borrowed.
+  /// @param store  What the file says of its terrain.
   /// @throws Error corruption, io_error
-  Floor(const ReadableFile& file, const FloorPlace& place, const HeightEncoding& heights);
+  Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts& store);
 
   [[nodiscard]] const FloorFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
@@ -109,15 +119,13 @@ class Floor {
 
  private:
   static constexpr std::size_t kSlots = 256;
-  /// A node that was verified. The lock is held while it is copied.
+  /// A node that was verified. The lock is held while it is copied, never while it is read.
   struct Slot {
     std::mutex lock;
     std::uint64_t position = UINT64_MAX;
-    layout::FloorNode node;
+    std::unique_ptr<layout::FloorNode> node;
   };
 
-  [[nodiscard]] layout::FloorNode node(std::size_t level, std::uint64_t number,
-                                       std::uint64_t checksum, IoCounters& counters) const;
   /// A node or a page as the node above it describes it.
   struct Found {
     std::uint64_t number;  ///< On its level.
@@ -126,6 +134,8 @@ class Floor {
     std::size_t level;  ///< That of pages is tree_.levels().
     Merit merit = kNoMerit;
   };
+  [[nodiscard]] layout::FloorNode read_node(const Found& found) const;
+  [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
   using Bound = std::function<Merit(const Bounds&)>;
   [[nodiscard]] Found root() const noexcept;
   /// The page that holds a key.
@@ -145,13 +155,14 @@ class Floor {
   bool visit_tiles(const Page& page, const Visit& visit) const;
   void decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
               FloorTile& tile) const;
+  [[nodiscard]] bool has_heights(const FloorTile& tile) const;
   [[noreturn]] void damaged(const char* what) const;
 
   const ReadableFile& file_;
   FloorPlace place_;
   FloorFacts facts_;
   FloorTree tree_{1};
-  layout::FloorNode root_{};  ///< Without entries until it is read.
+  layout::FloorNode root_{};
   HeightEncoding heights_;
   FloorNumbers numbers_;
   mutable std::vector<Slot> slots_{kSlots};

@@ -3,9 +3,24 @@
 
 namespace ptin {
 
+const char* fault_in(const layout::FloorNode& node, std::uint32_t entries) noexcept {
+  if (node.entries != entries) {
+    return "a node above the heights has another number of entries than follows from its place";
+  }
+  for (std::uint32_t i = 1; i < entries; ++i) {
+    if (node.entry[i].first <= node.entry[i - 1].first) {
+      return "the entries of a node above the heights are not in order";
+    }
+  }
+  return nullptr;
+}
+
 const char* FloorPageView::fault() const noexcept {
   if (head_.tiles == 0 || tiles_begin() > page_.size() || head_.bytes > page_.size()) {
     return "a page of heights has more tiles than fit, or none";
+  }
+  if (head_.span > UINT32_MAX - head_.least) {
+    return "a page of heights has heights of more than 32 bits";
   }
   std::size_t end = tiles_begin();
   for (std::size_t i = 0; i < head_.tiles; ++i) {
@@ -27,9 +42,9 @@ std::optional<std::size_t> FloorPageView::tile_with(std::uint64_t wanted) const 
   return std::nullopt;
 }
 
-FloorPageView::Heights FloorPageView::heights(std::size_t i) const noexcept {
+FloorBounds FloorPageView::heights(std::size_t i) const noexcept {
   const layout::FloorTileEntry of = entry(i);
-  if (of.least > of.greatest) return {UINT32_MAX, 0};
+  if (of.least > of.greatest) return {};
   const std::uint64_t span = head_.span;
   const std::uint64_t low = of.least * span / UINT16_MAX;
   const std::uint64_t high = (of.greatest * span + UINT16_MAX - 1) / UINT16_MAX;

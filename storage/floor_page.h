@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// A page of heights as its bytes have it: which tiles it holds, and where.
+// A page of heights as its bytes have it: which tiles it holds, and where. And the nodes above.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -13,6 +14,20 @@
 #include "storage/layout.h"
 
 namespace ptin {
+
+/// Heights from the least to the greatest. Of void samples alone there are none.
+struct FloorBounds {
+  OrderedHeight least = UINT32_MAX, greatest = 0;
+  void join(const FloorBounds& b) noexcept {
+    least = std::min(least, b.least);
+    greatest = std::max(greatest, b.greatest);
+  }
+  [[nodiscard]] bool is_empty() const noexcept { return least > greatest; }
+};
+
+/// What is wrong with a node that should have so many entries, as a sentence: its checksum can be right
+/// all the same. Null where nothing is.
+[[nodiscard]] const char* fault_in(const layout::FloorNode& node, std::uint32_t entries) noexcept;
 
 /// Looks at the bytes of a page. Borrowed. Where fault() is not null nothing else may be asked.
 class FloorPageView {
@@ -35,11 +50,8 @@ class FloorPageView {
     const std::size_t begin = i == 0 ? tiles_begin() : entry(i - 1).end;
     return page_.subspan(begin, entry(i).end - begin);
   }
-  /// The heights between which a tile's lie, not nearer; least > greatest: all are void.
-  struct Heights {
-    OrderedHeight least, greatest;
-  };
-  [[nodiscard]] Heights heights(std::size_t i) const noexcept;
+  /// The heights between which a tile's lie, not nearer.
+  [[nodiscard]] FloorBounds heights(std::size_t i) const noexcept;
 
  private:
   [[nodiscard]] layout::FloorTileEntry entry(std::size_t i) const noexcept {

@@ -53,7 +53,7 @@ bool is_wanted(const Merit& merit, const Merit& cut_off) noexcept {
 /// and of those that are large for a window the quarters tell more.
 class EntriesOfNode {
  public:
-  using Heights = FloorPageView::Heights;
+  using Heights = FloorBounds;
   /// @param end    Key behind the node's tiles.
   /// @param merit  merit(square's tiles, least, greatest height) of what lies there.
   template <class MeritOf>
@@ -126,9 +126,9 @@ Floor::Bounds Floor::bounds_of(const TileRange& tiles, OrderedHeight least,
 
 void Floor::expand(const Found& found, const Bound& bound, Merit cut_off, std::vector<Found>& below,
                    IoCounters& counters) const {
-  const layout::FloorNode here = node(found.level, found.number, found.entry.checksum, counters);
+  const layout::FloorNode here = node(found, counters);
   const EntriesOfNode entries(facts_.shape, here, found.end, cut_off,
-                              [&](const TileRange& tiles, const FloorPageView::Heights& heights) {
+                              [&](const TileRange& tiles, const FloorBounds& heights) {
                                 return bound(bounds_of(tiles, heights.least, heights.greatest));
                               });
   for (const EntriesOfNode::Wanted& wanted : entries.wanted()) {
@@ -136,9 +136,6 @@ void Floor::expand(const Found& found, const Bound& bound, Merit cut_off, std::v
     below.push_back({found.number * layout::kFloorFanOut + wanted.entry,
                      next < here.entries ? here.entry[next].first : found.end,
                      here.entry[wanted.entry], found.level + 1, wanted.merit});
-    if (below.back().number >= tree_.entries(found.level)) {
-      damaged("a node above the heights has too many entries");
-    }
   }
 }
 
@@ -149,7 +146,7 @@ void Floor::announce(const std::vector<Found>& found, IoCounters& counters) cons
                        ranges);
     for (const Found& f : found) {
       if ((f.level == tree_.levels()) == is_page) {
-        joiner.add(is_page ? f.number : tree_.position(f.level, f.number));
+        joiner.add(is_page ? f.number : tree_.position(f.level, f.number) - 1);
       }
     }
   }
@@ -177,7 +174,7 @@ bool Floor::visit_tiles(const Page& page, const Visit& visit) const {
     if (cell.x >= facts_.shape.columns() || cell.y >= facts_.shape.rows()) {
       damaged("a page of heights has a tile beside the raster");
     }
-    const FloorPageView::Heights heights = view.heights(i);
+    const FloorBounds heights = view.heights(i);
     if (!visit(i, TileAt{cell.x, cell.y,
                          bounds_of({cell.x, cell.y, cell.x, cell.y}, heights.least,
                                    heights.greatest)})) {

@@ -75,6 +75,11 @@ class FloorTree {
   [[nodiscard]] std::uint64_t entries(std::size_t level) const noexcept {
     return level + 1 < nodes_.size() ? nodes_[level + 1] : pages_;
   }
+  /// The entries of one node of a level.
+  [[nodiscard]] std::uint32_t children(std::size_t level, std::uint64_t number) const noexcept {
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(
+        layout::kFloorFanOut, entries(level) - number * layout::kFloorFanOut));
+  }
   [[nodiscard]] std::uint64_t position(std::size_t level, std::uint64_t number) const noexcept {
     for (std::size_t i = 0; i < level; ++i) number += nodes_[i];
     return number;
