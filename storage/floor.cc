@@ -114,9 +114,9 @@ layout::FloorNode Floor::node(std::size_t level, std::uint64_t number, std::uint
   return read;
 }
 
-Floor::Found Floor::find(std::uint64_t key, IoCounters& counters) const {
+Floor::Found Floor::find(std::uint64_t key, std::size_t depth, IoCounters& counters) const {
   Found found{0, UINT64_MAX, {0, 0, 0, place_.root_checksum}};
-  for (std::size_t level = 0; level < tree_.levels(); ++level) {
+  for (std::size_t level = 0; level < depth; ++level) {
     const layout::FloorNode here = node(level, found.number, found.entry.checksum, counters);
     const auto end = here.entry.begin() + here.entries;
     const auto after =
@@ -132,6 +132,26 @@ Floor::Found Floor::find(std::uint64_t key, IoCounters& counters) const {
     }
   }
   return found;
+}
+
+void Floor::announce_at(std::size_t depth, std::span<const std::uint64_t> keys,
+                        IoCounters& counters) const {
+  const std::uint64_t offset =
+      depth == tree_.levels() ? place_.pages.offset
+                              : place_.nodes.offset + tree_.position(depth, 0) * layout::kNodeBytes;
+  IoCounters counted_when_read;
+  RangesToCome ranges(file_, counters);
+  RangeJoiner joiner(offset, layout::kFloorPageBytes, ranges);
+  for (auto key = keys.begin(); key != keys.end();) {
+    const Found found = find(*key, depth, counted_when_read);
+    joiner.add(found.number);
+    key = std::lower_bound(key, keys.end(), found.end);
+  }
+}
+
+void Floor::announce(std::span<const std::uint64_t> keys, IoCounters& counters) const {
+  if (!is_far()) return;
+  for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) announce_at(depth, keys, counters);
 }
 
 void Floor::read_page(const Found& found, Page& page, IoCounters& counters) const {
@@ -168,7 +188,7 @@ void Floor::read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile&
   const std::uint64_t key = FloorShape::key(column, row);
   const bool is_there =
       page.number_ != UINT64_MAX && key >= page.first_ && tile_on(page.bytes_, key - page.first_);
-  if (!is_there) read_page(find(key, counters), page, counters);
+  if (!is_there) read_page(find(key, tree_.levels(), counters), page, counters);
   const std::optional<std::size_t> i = tile_on(page.bytes_, key - page.first_);
   if (!i) damaged("a tile of heights is on no page");
   decode(page, *i, column, row, tile);
@@ -189,10 +209,13 @@ std::vector<Floor::Found> Floor::pages_of(const std::vector<std::uint64_t>& keys
                                           const std::function<bool(const TileBounds&)>& wants,
                                           IoCounters& counters) const {
   std::vector<Found> pages;
+  for (std::size_t depth = 1; is_far() && depth < tree_.levels(); ++depth) {
+    announce_at(depth, keys, counters);
+  }
   RangesToCome ranges(file_, counters);
   RangeJoiner joiner(place_.pages.offset, layout::kFloorPageBytes, ranges);
   for (auto key = keys.begin(); key != keys.end();) {
-    const Found found = find(*key, counters);
+    const Found found = find(*key, tree_.levels(), counters);
     const auto end = std::lower_bound(key, keys.end(), found.end);
     if (std::any_of(key, end, [&](std::uint64_t k) {
           const HilbertCell cell = hilbert_cell(k);

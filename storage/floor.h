@@ -46,6 +46,14 @@ class Floor {
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] std::uint64_t pages() const noexcept { return tree_.pages(); }
 
+  /// ReadableFile::is_far() of the file.
+  [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
+  /// Has what some tiles are read from come together, where it lies elsewhere: a round for each level of
+  /// nodes below the root, and one for the pages. Else nothing.
+  /// @param keys  FloorShape::key() of tiles, ascending.
+  /// @throws Error corruption, io_error
+  void announce(std::span<const std::uint64_t> keys, IoCounters& counters) const;
+
   /// Tiles from a column and a row to others, these too.
   struct Tiles {
     std::uint32_t first_column, first_row, last_column, last_row;
@@ -93,8 +101,10 @@ class Floor {
     std::uint64_t end;  ///< Key of the first tile of the next page.
     layout::FloorEntry entry;
   };
-  /// The page that holds a key.
-  [[nodiscard]] Found find(std::uint64_t key, IoCounters& counters) const;
+  /// The page that holds a key; the node above it, `depth` levels below the root, where that is less deep.
+  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, IoCounters& counters) const;
+  void announce_at(std::size_t depth, std::span<const std::uint64_t> keys,
+                   IoCounters& counters) const;
   void read_page(const Found& found, Page& page, IoCounters& counters) const;
   [[nodiscard]] std::vector<std::uint64_t> keys_of(const Tiles& tiles) const;
   /// The pages that hold wanted tiles, ascending, and announced.
