@@ -69,9 +69,7 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 }  // namespace
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
-  const bool is_full = stars_.detail().is_by_error() && stars_.detail().tolerance() < 0;
-  const Floor* const floor = is_full ? terrain_.floor() : nullptr;
-  if (floor != nullptr) {
+  if (const Floor* const floor = floor_for(terrain_, stars_.detail())) {
     return read_floor(*floor, place, context, visitor);
   }
   stars_.clear();
