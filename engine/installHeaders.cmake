@@ -39,6 +39,7 @@ set(public_headers
     engine/geometry/interval.h
     engine/geometry/orient.h
     engine/geometry/point.h
+    engine/geometry/sample_range.h
     engine/growing_array.h
     engine/large_array.h
     engine/memory_units.h

@@ -87,9 +87,9 @@ Floor::Found Floor::root() const noexcept {
   return {0, UINT64_MAX, {0, 0, 0, place_.root_checksum}, 0};
 }
 
-Floor::Found Floor::find(std::uint64_t key, IoCounters& counters) const {
+Floor::Found Floor::find(std::uint64_t key, std::size_t depth, IoCounters& counters) const {
   Found found = root();
-  while (found.level < tree_.levels()) {
+  while (found.level < depth) {
     const layout::FloorNode here = node(found, counters);
     const auto end = here.entry.begin() + here.entries;
     const auto after =
@@ -101,6 +101,19 @@ Floor::Found Floor::find(std::uint64_t key, IoCounters& counters) const {
              after != end ? after->first : found.end, *(after - 1), found.level + 1};
   }
   return found;
+}
+
+void Floor::announce(std::span<const std::uint64_t> keys, IoCounters& counters) const {
+  if (!is_far()) return;
+  IoCounters counted_when_read;
+  for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) {
+    std::vector<Found> found;
+    for (auto key = keys.begin(); key != keys.end();) {
+      found.push_back(find(*key, depth, counted_when_read));
+      key = std::lower_bound(key, keys.end(), found.back().end);
+    }
+    announce(found, counters);
+  }
 }
 
 void Floor::read_page(const Found& found, Page& page, IoCounters& counters) const {
@@ -154,7 +167,7 @@ void Floor::read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile&
                  IoCounters& counters) const {
   const std::uint64_t key = FloorShape::key(column, row);
   if (page.number_ == UINT64_MAX || key < page.first_ || key >= page.end_) {
-    read_page(find(key, counters), page, counters);
+    read_page(find(key, tree_.levels(), counters), page, counters);
   }
   const std::optional<std::size_t> i = page.view().tile_with(key - page.first_);
   if (!i) damaged("a tile of heights is on no page");

@@ -66,6 +66,14 @@ class Floor {
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
   [[nodiscard]] std::uint64_t pages() const noexcept { return tree_.pages(); }
 
+  /// ReadableFile::is_far() of the file.
+  [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
+  /// Has what some tiles are read from come together, where it lies elsewhere: a round for each level of
+  /// nodes below the root, and one for the pages. Else nothing.
+  /// @param keys  FloorShape::key() of tiles, ascending.
+  /// @throws Error corruption, io_error
+  void announce(std::span<const std::uint64_t> keys, IoCounters& counters) const;
+
   /// What is known of samples before they are read.
   struct Bounds {
     GridBox box;     ///< Of their places, grid units.
@@ -138,8 +146,8 @@ class Floor {
   [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
   using Bound = std::function<Merit(const Bounds&)>;
   [[nodiscard]] Found root() const noexcept;
-  /// The page that holds a key.
-  [[nodiscard]] Found find(std::uint64_t key, IoCounters& counters) const;
+  /// The page that holds a key; the node above it, `depth` levels below the root, where that is less deep.
+  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, IoCounters& counters) const;
   /// What of a node's entries is not below the cut-off, along the curve.
   void expand(const Found& node, const Bound& bound, Merit cut_off, std::vector<Found>& below,
               IoCounters& counters) const;

@@ -3,6 +3,7 @@
 // Position along the Hilbert curve: points that are near along the curve are near in the plane.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 namespace ptin {
@@ -13,11 +14,13 @@ namespace ptin {
 [[nodiscard]] constexpr std::uint64_t hilbert_position(std::uint32_t x, std::uint32_t y) noexcept {
   // One quadrant a step, from the largest: its place along the curve of four quadrants is appended,
   // and the frame is turned to the one in which the rest of the curve is the standard one.
-  // `swapped` and `inverted` are all ones or zeros, so that the loop has no branch.
+  // `swapped` and `inverted` are all ones or zeros, so that the loop has no branch. Quadrants that
+  // both numbers are too small for only exchange the axes, each once.
+  const int passed = std::countl_zero(x | y);
   std::uint64_t position = 0;
-  std::uint32_t swapped = 0;
+  std::uint32_t swapped = 0U - (static_cast<std::uint32_t>(passed) & 1U);
   std::uint32_t inverted = 0;
-  for (int bit = 31; bit >= 0; --bit) {
+  for (int bit = 31 - passed; bit >= 0; --bit) {
     const std::uint32_t exchanged = (x ^ y) & swapped;
     const std::uint32_t qx = (((x ^ exchanged) ^ inverted) >> bit) & 1U;
     const std::uint32_t qy = (((y ^ exchanged) ^ inverted) >> bit) & 1U;
@@ -40,9 +43,10 @@ struct HilbertCell {
 /// The cell at a position: the inverse of hilbert_position().
 [[nodiscard]] constexpr HilbertCell hilbert_cell(std::uint64_t position) noexcept {
   HilbertCell cell;
-  std::uint32_t swapped = 0;
+  const int passed = std::countl_zero(position) / 2;
+  std::uint32_t swapped = 0U - (static_cast<std::uint32_t>(passed) & 1U);
   std::uint32_t inverted = 0;
-  for (int bit = 31; bit >= 0; --bit) {
+  for (int bit = 31 - passed; bit >= 0; --bit) {
     const auto place = static_cast<std::uint32_t>(position >> (2 * bit)) & 3U;
     const std::uint32_t qx = place >> 1;
     const std::uint32_t qy = (place ^ qx) & 1U;

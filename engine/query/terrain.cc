@@ -3,12 +3,38 @@
 
 #include <utility>
 
+#include "engine/error.h"
 #include "engine/query/paper/isoline_extraction.h"
 #include "engine/query/paper/point_location.h"
 #include "engine/query/paper/visibility.h"
 #include "engine/query/questions.h"
 
 namespace ptin {
+
+Terrain Terrain::answering(AnswerBy by, const DetailRequest& detail) const {
+  Terrain terrain = *this;
+  if (by == AnswerBy::kStars || is_by_splits(by)) {
+    terrain.use_floor(false);
+  }
+  if (by != AnswerBy::kHeights) {
+    return terrain;
+  }
+  terrain.use_floor(true);
+  if (detail.tolerance || detail.vertices) {
+    refuse("heights answer for the full TIN, and a level of detail is asked for: ask by stars");
+  }
+  if (uses_other_index()) {
+    refuse("heights are found without an index, and another one is in use: ask without it");
+  }
+  if (terrain.floor() == nullptr) {
+    refuse(
+        "the file has no heights of a raster to answer from: it was built from points or a TIN, "
+        "with "
+        "an error left out, or by an older version; ask by stars",
+        store().path());
+  }
+  return terrain;
+}
 
 RefinedTin Terrain::refine(const RefineRequest& request) const {
   return ptin::refine(*this, request);
@@ -22,8 +48,9 @@ MovingWindow Terrain::moving_window(const MovingWindowOptions& options) const {
 
 LocateResult Terrain::locate(std::span<const MapPoint> points, const LocateRequest& request,
                              AnswerBy by) const {
-  return is_by_splits(by) ? paper::locate(*this, points, request)
-                          : ptin::locate(*this, points, request);
+  const Terrain terrain = answering(by, request.detail);
+  return is_by_splits(by) ? paper::locate(terrain, points, request)
+                          : ptin::locate(terrain, points, request);
 }
 
 ProfileResult Terrain::profile(std::span<const MapPoint> line,
@@ -62,8 +89,9 @@ SightResult Terrain::sight(const SightPair& pair, const SightRequest& request, A
 
 SightSolver Terrain::sight_lines(const SightRequest& request, std::uint64_t coarse_records,
                                  AnswerBy by) const {
-  return is_by_splits(by) ? paper::sight_lines(*this, request)
-                          : SightSolver(*this, request, coarse_records);
+  const Terrain terrain = answering(by, request.detail);
+  return is_by_splits(by) ? paper::sight_lines(terrain, request)
+                          : SightSolver(terrain, request, coarse_records);
 }
 
 Viewshed Terrain::viewshed(const ViewshedRequest& request) const {
@@ -71,7 +99,8 @@ Viewshed Terrain::viewshed(const ViewshedRequest& request) const {
 }
 
 Isolines Terrain::isolines(const IsolineRequest& request, AnswerBy by) const {
-  return is_by_splits(by) ? paper::isolines(*this, request) : ptin::isolines(*this, request);
+  const Terrain terrain = answering(by, request.detail);
+  return is_by_splits(by) ? paper::isolines(terrain, request) : ptin::isolines(terrain, request);
 }
 
 VolumeResult Terrain::volume(const VolumeRequest& request) const {

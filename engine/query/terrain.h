@@ -46,6 +46,7 @@ namespace ptin {
 enum class PointState : std::uint8_t;
 struct ClassChanges;
 struct ClassChangesRequest;
+struct DetailRequest;
 struct HierarchyReport;
 struct HierarchyRequest;
 struct HighestRequest;
@@ -76,8 +77,13 @@ class MovingWindow;
 class SightSolver;
 class TinParts;
 
-/// How points, lines of sight and isolines are found.
+/// How points, lines of sight and isolines are found. The answers are the same.
 enum class AnswerBy : std::uint8_t {
+  /// From heights where they can be, else from stars. A terrain with another index in use answers by
+  /// splits.
+  kBest,
+  /// The full TIN from the heights of a raster, where the file has them (OpenedTerrain::floor()).
+  kHeights,
   /// From the triangles that live at the level and meet the place (engine/DESIGN.md, section 6.15),
   /// found by the file's own index.
   kStars,
@@ -91,7 +97,7 @@ enum class AnswerBy : std::uint8_t {
 /// another, and each keeps to limits of its own.
 ///
 /// Errors that every question may throw; the header of a question names further ones:
-///   invalid_argument    a request that means nothing
+///   invalid_argument    a request that means nothing, or heights are to answer and cannot
 ///   resource_exhausted  the answer needs more memory than the limit; what the index shows is
 ///                       refused before pages are read, what results take while they grow
 ///   corruption          a page of the file is damaged, or the file changed since it was opened
@@ -119,7 +125,7 @@ class Terrain : public OpenedTerrain {
 
   /// Heights at points in map units: surface, void and outside told apart.
   [[nodiscard]] LocateResult locate(std::span<const MapPoint> points, const LocateRequest& request,
-                                    AnswerBy by = AnswerBy::kStars) const;
+                                    AnswerBy by = AnswerBy::kBest) const;
   /// Heights along a polyline, with a break at every edge of the TIN.
   [[nodiscard]] ProfileResult profile(std::span<const MapPoint> line,
                                       const ProfileRequest& request) const;
@@ -137,17 +143,17 @@ class Terrain : public OpenedTerrain {
 
   /// Whether the ends of a line see each other.
   [[nodiscard]] SightResult sight(const SightPair& pair, const SightRequest& request,
-                                  AnswerBy by = AnswerBy::kStars) const;
+                                  AnswerBy by = AnswerBy::kBest) const;
   /// Sight lines of many pairs.
   /// @param coarse_records  As for the constructor of SightSolver; by splits there is no coarse level.
   [[nodiscard]] SightSolver sight_lines(const SightRequest& request, std::uint64_t coarse_records,
-                                        AnswerBy by = AnswerBy::kStars) const;
+                                        AnswerBy by = AnswerBy::kBest) const;
   /// What one observer sees.
   [[nodiscard]] Viewshed viewshed(const ViewshedRequest& request) const;
 
   /// Isolines, joined over the whole terrain.
   [[nodiscard]] Isolines isolines(const IsolineRequest& request,
-                                  AnswerBy by = AnswerBy::kStars) const;
+                                  AnswerBy by = AnswerBy::kBest) const;
 
   /// Cut, fill and net volume over or under a level, or between two terrains.
   [[nodiscard]] VolumeResult volume(const VolumeRequest& request) const;
@@ -169,6 +175,10 @@ class Terrain : public OpenedTerrain {
   [[nodiscard]] bool is_by_splits(AnswerBy by) const noexcept {
     return by == AnswerBy::kSplits || uses_other_index();
   }
+  /// This terrain, with its heights in use where they may answer.
+  /// @throws Error invalid_argument  heights are to answer, and the file has none, the level is not the
+  ///                                 full TIN, or another index is in use
+  [[nodiscard]] Terrain answering(AnswerBy by, const DetailRequest& detail) const;
 };
 
 }  // namespace ptin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// `--by stars` and `--by splits` of `ptin locate`, `isoline` and `sight`: two ways, one answer.
+// `--by` heights, stars and splits of `ptin locate`, `isoline` and `sight`: three ways, one answer.
 #include <algorithm>
 #include <cstdio>
 #include <set>
@@ -105,6 +105,9 @@ TEST_P(AnswerByBothWays, IsTheSameForManyPoints) {
     asked.insert(asked.end(), level.begin(), level.end());
     const json by_stars = answer_by("stars", asked);
     EXPECT_EQ(by_stars, answer_by("splits", asked));
+    if (level.empty()) {
+      EXPECT_EQ(by_stars, answer_by("heights", asked));
+    }
     for (const json& point : by_stars.at("points")) states.insert(point.at("state"));
     const auto csv_by = [&](const char* way) {
       Arguments arguments = asked;
@@ -114,6 +117,9 @@ TEST_P(AnswerByBothWays, IsTheSameForManyPoints) {
       return read_file(folder_.file("a.csv"));
     };
     EXPECT_EQ(csv_by("stars"), csv_by("splits"));
+    if (level.empty()) {
+      EXPECT_EQ(csv_by("stars"), csv_by("heights"));
+    }
   }
   EXPECT_TRUE(states.contains("surface") && states.contains("outside"));
   EXPECT_TRUE(states.contains("void") || GetParam() == std::string("mountains_257.tif"));
@@ -127,8 +133,11 @@ TEST_P(AnswerByBothWays, IsTheSameForOnePoint) {
     for (std::size_t i = 0; i + 5 < points.size(); i += points.size() / 23) {
       Arguments asked = {"locate", file_, text_of(points[i].x), text_of(points[i].y)};
       asked.insert(asked.end(), level.begin(), level.end());
-      EXPECT_EQ(answer_by("stars", asked), answer_by("splits", asked))
-          << asked[2] << " " << asked[3];
+      const json by_stars = answer_by("stars", asked);
+      EXPECT_EQ(by_stars, answer_by("splits", asked)) << asked[2] << " " << asked[3];
+      if (level.empty()) {
+        EXPECT_EQ(by_stars, answer_by("heights", asked)) << asked[2] << " " << asked[3];
+      }
     }
   }
 }
@@ -137,7 +146,7 @@ TEST_P(AnswerByBothWays, IsTheSameForOnePoint) {
 TEST_P(AnswerByBothWays, NamesTrianglesFromTheirSouthernmostCorner) {
   const std::vector<MapPoint> points = telling_points(file_, 3, 1);
   const MapPoint& inner = points[(points.size() / 6) * 3 + 2];
-  for (const char* way : {"stars", "splits"}) {
+  for (const char* way : {"heights", "stars", "splits"}) {
     const json answer = answer_by(way, {"locate", file_, text_of(inner.x), text_of(inner.y)});
     const json& corners = answer.at("points").at(0).at("triangle");
     const auto at = [&](std::size_t i) { return corners.at(i).at(0).get<double>(); };
@@ -155,7 +164,8 @@ TEST_P(AnswerByBothWays, IsTheSameForIsolines) {
                                         {"--interval", "20", "--vertices", "900"}};
   for (const Arguments& options : asked) {
     std::vector<std::string> layers;
-    for (const char* way : {"stars", "splits"}) {
+    for (const char* way : {"stars", "splits", "heights"}) {
+      if (way == std::string("heights") && options.size() > 2) continue;  // of the full TIN alone
       Arguments arguments = {"isoline", file_, "--by", way, "--3d", "--json", "--overwrite"};
       arguments.insert(arguments.end(), {"-o", folder_.file("a.geojson")});
       arguments.insert(arguments.end(), options.begin(), options.end());
@@ -165,7 +175,7 @@ TEST_P(AnswerByBothWays, IsTheSameForIsolines) {
       EXPECT_EQ(answer.at("cost").at("records_applied") > 0, way == std::string("splits"));
       layers.push_back(read_file(folder_.file("a.geojson")));
     }
-    EXPECT_EQ(layers[0], layers[1]);
+    for (const std::string& layer : layers) EXPECT_EQ(layer, layers[0]);
   }
 }
 
@@ -217,15 +227,38 @@ INSTANTIATE_TEST_SUITE_P(Terrains, AnswerByBothWays,
                            return name.substr(0, name.find('_'));
                          });
 
-TEST(AnswerBy, IsStarsUnlessSaidOtherwise) {
+TEST(AnswerBy, IsHeightsOfTheFullTinAndStarsOfLevels) {
   const TestFolder folder;
   const std::string file = testing::small_store(folder);
   for (const Arguments& level : {Arguments{}, {"--error", "3"}, {"--vertices", "100"}}) {
     Arguments asked = {"locate", file, "500500", "3999500", "--json"};
     asked.insert(asked.end(), level.begin(), level.end());
     const json answer = testing::answer_of(asked);
-    EXPECT_GT(answer.at("cost").at("stars_read"), 0);
+    EXPECT_EQ(answer.at("cost").at("stars_read") > 0, !level.empty());
+    EXPECT_GT(answer.at("cost").at("pages"), 0);
     EXPECT_EQ(answer.at("cost").at("records_applied"), 0);
+  }
+}
+
+TEST(AnswerBy, HeightsAreRefusedWhereTheyCannotAnswer) {
+  const TestFolder folder;
+  const std::string file = testing::small_store(folder);
+  Arguments asked = {"locate", file, "500500", "3999500", "--by", "heights"};
+  EXPECT_EQ(run_ptin(asked).status, 0);
+  asked.insert(asked.end(), {"--error", "0"});
+  testing::expect_refusal(run_ptin(asked), 2, "a level of detail is asked for");
+  asked = {"locate", file, "500500", "3999500", "--by", "heights", "--index", "spatialindex"};
+  testing::expect_refusal(run_ptin(asked), 2, "heights are found without an index");
+  write_file(folder.file("p.csv"), "x,y,z\n0,0,1\n40,0,2\n20,40,3\n20,20,9\n");
+  expect_done(
+      {"build", folder.file("p.csv"), "--resolution", "1", "-o", folder.file("p.ptin"), "-q"});
+  for (const Arguments& question : std::vector<Arguments>{
+           {"locate", folder.file("p.ptin"), "20", "10"},
+           {"sight", folder.file("p.ptin"), "20", "10", "1", "20", "15", "1"},
+           {"isoline", folder.file("p.ptin"), "-i", "1", "-o", folder.file("l.geojson")}}) {
+    Arguments by_heights = question;
+    by_heights.insert(by_heights.end(), {"--by", "heights"});
+    testing::expect_refusal(run_ptin(by_heights), 2, "has no heights of a raster");
   }
 }
 

@@ -3,6 +3,7 @@
 // ptin bench: what it tells, refuses and leaves behind.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <memory>
@@ -99,10 +100,35 @@ TEST_F(Bench, AsksAtAnErrorAndAtPlacesOfTheSeed) {
       if (row["question"] != name_of(kind)) continue;
       const Answer answer = questions.ask(questions.make(kind, 0, terrain), terrain, {});
       EXPECT_EQ(row["pages"], answer.cost.io.pages) << row;
+      const std::uint64_t least = questions.least_bytes(questions.make(kind, 0, terrain), answer);
+      EXPECT_EQ(least % 4096, 0U);
+      EXPECT_EQ(row["asked_over_least"].get<double>() * static_cast<double>(least),
+                row["asked_bytes"].get<double>());
       ++compared;
     }
   }
   EXPECT_EQ(compared, 12);
+}
+
+/// A point is a page and a node of heights, of which a page holds the answer.
+TEST_F(Bench, TellsWhatIsReadOverTheLeastThatHoldsTheAnswer) {
+  const json told = answer_of(quick({"--json", "-q"}));
+  for (const json& row : told["readings"]) {
+    EXPECT_EQ(row["asked_over_least"].is_null(), row["what"] != "question" || row["times"] == 0);
+    if (row["what"] == "question" && row["question"] == "point" && row["times"] > 0) {
+      EXPECT_EQ(row["asked_over_least"], 2.0);
+    }
+  }
+  const Terrain terrain = Terrain::open(store_);
+  const Questions questions(terrain.store(), 9, {});
+  double heights = 0, samples = 257.0 * 257.0;
+  for (const SectionInfo& s : terrain.store().sections()) {
+    if (s.name == "heights") heights = static_cast<double>(s.bytes);
+  }
+  const Question window = questions.make(QuestionKind::kWindow25th, 0, terrain);
+  const Answer answer = questions.ask(window, terrain, {});
+  const double bytes = std::pow(0.2 * 256 + 1, 2) * heights / samples;
+  EXPECT_EQ(questions.least_bytes(window, answer), std::ceil(bytes / 4096) * 4096);
 }
 
 /// How many pixels of a PNG have a colour.

@@ -71,7 +71,7 @@ TEST(Usage, NamesWhatWasProbablyMeant) {
   expect_refusal(run_ptin({"build", "a.tif", "-o", "a.ptin", "--mem=1G"}), 2,
                  "did you mean --memory?");
   expect_refusal(run_ptin({"locate", "a.ptin", "1", "2", "--by", "star"}), 2,
-                 "--by: star is none of stars, splits; did you mean stars?");
+                 "--by: star is none of heights, stars, splits; did you mean stars?");
 }
 
 TEST(Usage, SaysHowManyValuesThereAreAndWhich) {

@@ -122,12 +122,15 @@ void add_curvature(Parameters& rows, double& coefficient) {
 
 void add_by(Parameters& rows, AnswerBy& by) {
   const auto read = [&by](const std::string& name) {
-    by = name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars;
+    by = name == "heights" ? AnswerBy::kHeights
+                           : (name == "splits" ? AnswerBy::kSplits : AnswerBy::kStars);
   };
-  rows.add("by", read, "TEXT",
-           "stars: look up the triangles that live at the level; splits: refine T0, as the paper "
-           "has it. An exact answer is the same, at a level both are true (default stars)")
-      .of({"stars", "splits"})
+  rows.add(
+          "by", read, "TEXT",
+          "heights: read those of the raster, for the full TIN; stars: look up the triangles that "
+          "live at the level; splits: refine T0, as the paper has it. An exact answer is the same, "
+          "at a level both are true (default heights where the file has them, else stars)")
+      .of({"heights", "stars", "splits"})
       .at(Door::kProgram);
 }
 

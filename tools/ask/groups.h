@@ -57,7 +57,7 @@ void add_levels(Parameters& rows, Levels& levels, const std::string& level_help,
 /// `curvature`, and on the command line --refraction, of questions that look over the ground
 /// (engine/query/sight/curvature.h).
 void add_curvature(Parameters& rows, double& coefficient);
-/// --by: stars or splits.
+/// --by: heights, stars or splits.
 void add_by(Parameters& rows, AnswerBy& by);
 /// --threads. 0: as many as the process may use.
 void add_threads(Parameters& rows, int& threads, std::string help, double most = 1024);

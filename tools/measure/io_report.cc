@@ -31,6 +31,11 @@ double Readings::mean_nodes() const {
 double Readings::mean_asked_bytes() const {
   return mean_of([](const Reading& r) { return r.io.bytes_read; });
 }
+std::optional<double> Readings::asked_over_least() const {
+  const double least = mean_of([](const Reading& r) { return r.least_bytes; });
+  if (least == 0) return {};
+  return mean_asked_bytes() / least;
+}
 double Readings::mean_major_faults() const {
   return mean_of([](const Reading& r) { return r.major_faults; });
 }

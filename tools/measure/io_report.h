@@ -42,6 +42,7 @@ struct Reading {
   IoCounters io;         ///< What the question counted; of opening nothing.
   std::optional<std::uint64_t> device_bytes;
   std::uint64_t major_faults = 0;
+  std::uint64_t least_bytes = 0;  ///< Questions::least_bytes(); 0: it is not asked.
 };
 
 /// Readings of the same question at many places.
@@ -57,6 +58,8 @@ class Readings {
   [[nodiscard]] double mean_pages() const;  ///< Means of no reading are 0.
   [[nodiscard]] double mean_nodes() const;
   [[nodiscard]] double mean_asked_bytes() const;  ///< Pages and nodes that were read.
+  /// Those bytes over the least that hold the answers; none where that is not asked.
+  [[nodiscard]] std::optional<double> asked_over_least() const;
   [[nodiscard]] double mean_major_faults() const;
   /// None where the system does not say, or there is no reading.
   [[nodiscard]] std::optional<double> mean_device_bytes() const;

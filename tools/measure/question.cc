@@ -106,6 +106,14 @@ const char* name_of(QuestionKind kind) noexcept {
 Questions::Questions(const StoreFile& store, std::uint64_t seed, std::optional<double> tolerance)
     : facts_(store.facts()), t0_(store.t0()), ground_(ground_of(crs_facts(store))), seed_(seed) {
   detail_.tolerance = tolerance;
+  const GridBox& b = facts_.bounds;
+  const double samples = (1.0 * b.max_x - b.min_x + 1) * (1.0 * b.max_y - b.min_y + 1);
+  const double records = std::max(1.0, static_cast<double>(store.record_count()));
+  for (const SectionInfo& section : store.sections()) {
+    const auto bytes = static_cast<double>(section.bytes);
+    if (section.name == "heights") bytes_of_sample_ = bytes / samples;
+    if (section.name == "pages") bytes_of_record_ = bytes / records;
+  }
 }
 
 bool Questions::is_in_hull(double x, double y) const {
@@ -185,6 +193,26 @@ Answer Questions::ask(const Question& question, const Terrain& terrain,
   request.detail = detail_;
   request.limits = limits;
   return ask_window(terrain, request);
+}
+
+double Questions::samples_of(const Question& question) const {
+  if (question.kind == QuestionKind::kPoint) return 4;
+  const bool is_line = question.kind == QuestionKind::kSight;
+  const Window& w = question.window;
+  const MapPoint a = facts_.map.to_grid(is_line ? question.at : MapPoint{w.min_x, w.min_y});
+  const MapPoint b = facts_.map.to_grid(is_line ? question.to : MapPoint{w.max_x, w.max_y});
+  const double across = std::abs(b.x - a.x), up = std::abs(b.y - a.y);
+  return is_line ? 2 * (across + up + 2) : (across + 1) * (up + 1);
+}
+
+std::uint64_t Questions::least_bytes(const Question& question, const Answer& answer) const {
+  constexpr double kPageBytes = 4096;
+  const bool is_by_heights =
+      answer.cost.stars_read == 0 && bytes_of_sample_ > 0 && !detail_.tolerance;
+  const double bytes = is_by_heights
+                           ? samples_of(question) * bytes_of_sample_
+                           : static_cast<double>(answer.cost.stars_read) * bytes_of_record_;
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(bytes / kPageBytes)) * kPageBytes);
 }
 
 PredicatePtr Questions::predicate(const Question& question) const {

@@ -54,18 +54,24 @@ class Questions {
   /// @throws Error as the question's function of Terrain
   [[nodiscard]] Answer ask(const Question& question, const Terrain& terrain,
                            const QueryLimits& limits) const;
+  /// The bytes of the file that make an answer, in whole pages, one at least. By heights: its samples times
+  /// the mean bytes of a sample; they are those of the cell of a point, of the box of a window, of the
+  /// cells along a sight line. By stars: those it looked at, times the mean bytes of a record.
+  [[nodiscard]] std::uint64_t least_bytes(const Question& question, const Answer& answer) const;
   /// The records that a window or a point asks for, as a search of an index takes it. Null for other
   /// kinds.
   [[nodiscard]] PredicatePtr predicate(const Question& question) const;
 
  private:
   [[nodiscard]] bool is_in_hull(double x, double y) const;
+  [[nodiscard]] double samples_of(const Question& question) const;
 
   StoreFacts facts_;
   CoarsestTin t0_;
   Ground ground_;
   std::uint64_t seed_;
   DetailRequest detail_;
+  double bytes_of_sample_ = 0.0, bytes_of_record_ = 0.0;
 };
 
 }  // namespace ptin::tools

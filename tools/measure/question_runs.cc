@@ -96,7 +96,8 @@ void QuestionRuns::read(const Question& question, std::size_t way, QuestionFigur
     into = run_.questions().ask(question, opened.terrain, time_.limits());
     return into.cost.io;
   };
-  const Reading first = run_.timed([&] { return ask(answer); });
+  Reading first = run_.timed([&] { return ask(answer); });
+  first.least_bytes = run_.questions().least_bytes(question, answer);
   if (is_cold) {
     report_.opening[way].cold.add(opened.reading);
     figures.cold.add(first);
@@ -105,7 +106,9 @@ void QuestionRuns::read(const Question& question, std::size_t way, QuestionFigur
     figures.cold.add_not_cold();
   }
   if (figures.way == ReadWay::kUring) return;
-  figures.warm.add(run_.timed([&] { return ask(again); }));
+  Reading second = run_.timed([&] { return ask(again); });
+  second.least_bytes = first.least_bytes;
+  figures.warm.add(second);
   if (again.digest != answer.digest)
     throw Error(ErrorCode::internal, "the same question had two answers", run_.request().file);
 }

@@ -91,19 +91,20 @@ void add_reads(const Readings& cold, const Readings& warm, std::vector<std::stri
   const bool is_cold = !cold.all().empty();
   const Readings& counted = is_cold ? cold : warm;
   if (counted.all().empty()) {
-    row.insert(row.end(), 5, "-");
+    row.insert(row.end(), 6, "-");
     return;
   }
   row.push_back(figure(counted.mean_pages()));
   row.push_back(figure(counted.mean_nodes()));
   row.push_back(figure(counted.mean_asked_bytes() / 1024));
+  row.push_back(figure(counted.asked_over_least()));
   row.push_back(figure(scaled(cold.mean_device_bytes(), 1.0 / 1024)));
   row.push_back(is_cold ? figure(cold.mean_major_faults()) : "-");
 }
 
-const std::vector<std::string> kReadingHead = {"times",     "cold ms",    "95 %",  "99 %",  "times",
-                                               "warm ms",   "95 %",       "99 %",  "pages", "nodes",
-                                               "asked KiB", "device KiB", "faults"};
+const std::vector<std::string> kReadingHead = {
+    "times", "cold ms", "95 %",  "99 %",      "times",   "warm ms",    "95 %",
+    "99 %",  "pages",   "nodes", "asked KiB", "/ least", "device KiB", "faults"};
 
 /// "window 1/25 (announced, pread) is left out: why", a line a kind.
 std::string left_out_text(const IoReport& report) {
@@ -162,6 +163,7 @@ std::string indexes_text(const IoReport& report) {
   std::vector<std::string> head = {"search of the index alone", "index"};
   head.insert(head.end(), kReadingHead.begin(), kReadingHead.end());
   head.erase(std::find(head.begin(), head.end(), "pages"));
+  head.erase(std::find(head.begin(), head.end(), "/ least"));
   AlignedTable table(2, head);
   for (const SearchFigures& s : report.index.searches) {
     std::vector<std::string> row = {name_of(s.kind), s.is_second ? kSecondIndex : kPackedIndex};
@@ -169,7 +171,8 @@ std::string indexes_text(const IoReport& report) {
     add_quantiles(s.warm, 1e3, row);
     const std::size_t pages = row.size();
     add_reads(s.cold, s.warm, row);
-    row.erase(row.begin() + static_cast<std::ptrdiff_t>(pages));
+    row.erase(row.begin() + static_cast<std::ptrdiff_t>(pages));      // a search reads none,
+    row.erase(row.begin() + static_cast<std::ptrdiff_t>(pages) + 2);  // and has no answer
     table.add(std::move(row));
   }
   std::string text = "\n" + table.text();
@@ -254,6 +257,7 @@ nlohmann::json reading_json(const char* what, const char* question, const char* 
                         {"pages", readings.mean_pages()},
                         {"index_nodes", readings.mean_nodes()},
                         {"asked_bytes", readings.mean_asked_bytes()},
+                        {"asked_over_least", or_null(readings.asked_over_least())},
                         {"device_bytes", or_null(readings.mean_device_bytes())},
                         {"major_faults", readings.mean_major_faults()},
                         {"left_out", nullptr}};

@@ -32,7 +32,7 @@ namespace {
 struct IsolineOptions {
   TerrainOptions terrain;
   ask::IsolineQuestion question;
-  AnswerBy by = AnswerBy::kStars;
+  AnswerBy by = AnswerBy::kBest;
   bool z = false;
   bool polygons = false;
   int threads = 0;

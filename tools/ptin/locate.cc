@@ -30,7 +30,7 @@ struct LocateOptions {
   std::string points;
   InputChoice choice;
   LocateRequest request;
-  AnswerBy by = AnswerBy::kStars;
+  AnswerBy by = AnswerBy::kBest;
   std::optional<std::uint64_t> memory;
   OutputOptions answer;
 };

@@ -33,7 +33,7 @@ struct SightOptions {
   std::string pairs;
   InputChoice choice;
   ask::SightQuestion question;
-  AnswerBy by = AnswerBy::kStars;
+  AnswerBy by = AnswerBy::kBest;
   std::optional<std::uint64_t> memory;
   OutputOptions answer;
 };

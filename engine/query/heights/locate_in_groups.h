@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What locating has in common, however the triangles are found: points in order along the Hilbert
-// curve, in groups.
+// curve, of the grid or of the tiles of heights, in groups.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,7 @@ struct PointOnCurve {
 struct PointGroup {
   std::span<const PointOnCurve> points;
   std::span<LocatedPoint> answers;  ///< One for each point of the request, by PointOnCurve::index.
+  const Floor* floor;               ///< floor_for() the terrain and the detail.
   const Detail& detail;
   QueryContext& context;
 

@@ -16,6 +16,52 @@ struct Cells {
   std::int64_t min_x, min_y, max_x, max_y;
 };
 
+/// A sample of a tile.
+/// @param first  The tile's first sample.
+LivingTriangle::Corner corner_of(const FloorTile& tile, const FloorNumbers& numbers,
+                                 GridPoint first, std::int32_t x, std::int32_t y) noexcept {
+  const std::size_t i = static_cast<std::size_t>(y) * tile.width + static_cast<std::size_t>(x);
+  const bool has_height = tile.is_void.empty() || tile.is_void[i] == 0;
+  return {{first.x + x, first.y + y}, has_height ? numbers.bits(tile.heights[i]) : 0, has_height};
+}
+
+using CellCorners = std::array<LivingTriangle::Corner, 4>;
+
+/// The corners of a cell, counter-clockwise from its lower left one.
+CellCorners corners_of(const FloorTile& tile, const FloorNumbers& numbers, GridPoint first,
+                       std::int32_t x, std::int32_t y) noexcept {
+  const auto at = [&](std::int32_t across, std::int32_t up) {
+    return corner_of(tile, numbers, first, x + across, y + up);
+  };
+  return {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+}
+
+RasterCell cell_of(const CellCorners& corners, const HeightEncoding& heights) noexcept {
+  RasterCell cell{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    cell.code[i] = heights.code(corners[i].height);
+    cell.has_height[i] = corners[i].has_height ? 1 : 0;
+  }
+  return cell;
+}
+
+/// The codes of a triangle's corners. A void one has surface on a side, or at a corner, that has heights.
+Interval heights_of(const LivingTriangle& t, const HeightEncoding& heights) noexcept {
+  Interval codes;
+  for (const LivingTriangle::Corner& c : t.corner) {
+    if (!c.has_height) continue;
+    const double code = heights.code(c.height);
+    codes = {std::min(codes.lo, code), std::max(codes.hi, code)};
+  }
+  return codes;
+}
+
+FloorTriangle triangle_of(const LivingTriangle::Corner& a, const LivingTriangle::Corner& b,
+                          const LivingTriangle::Corner& c,
+                          const std::array<std::int64_t, 3>& weight) noexcept {
+  return {{a, b, c}, weight, !(a.has_height && b.has_height && c.has_height)};
+}
+
 /// Cells of one tile, as triangles.
 class CellsOfTile {
  public:
@@ -39,39 +85,19 @@ class CellsOfTile {
   }
 
  private:
-  [[nodiscard]] LivingTriangle::Corner corner(const FloorTile& tile, GridPoint first,
-                                              std::int32_t x, std::int32_t y) const {
-    const std::size_t i = static_cast<std::size_t>(y) * tile.width + static_cast<std::size_t>(x);
-    const bool has_height = tile.is_void.empty() || tile.is_void[i] == 0;
-    return {
-        {first.x + x, first.y + y}, has_height ? numbers_.bits(tile.heights[i]) : 0, has_height};
-  }
-
   template <class Take>
   void visit_cell(const FloorTile& tile, GridPoint first, std::int32_t x, std::int32_t y,
                   const Take& take) const {
-    const std::array<LivingTriangle::Corner, 4> corners = {
-        corner(tile, first, x, y), corner(tile, first, x + 1, y), corner(tile, first, x + 1, y + 1),
-        corner(tile, first, x, y + 1)};
-    RasterCell cell{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      cell.code[i] = heights_.code(corners[i].height);
-      cell.has_height[i] = corners[i].has_height ? 1 : 0;
-    }
+    const CellCorners corners = corners_of(tile, numbers_, first, x, y);
+    const RasterCell cell = cell_of(corners, heights_);
     for (const auto& numbers : cell_triangles(cell_diagonal(cell, corners[0].position))) {
       LivingTriangle t;
       t.deviation = 0.0;
-      t.heights = {};
       for (std::size_t i = 0; i < 3; ++i) {
         t.corner[i] = corners[numbers[i]];
         t.is_void = t.is_void || !t.corner[i].has_height;
       }
-      // A void triangle has surface on a side, or at a corner, that has heights.
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (!t.corner[i].has_height) continue;
-        const double code = cell.code[numbers[i]];
-        t.heights = {std::min(t.heights.lo, code), std::max(t.heights.hi, code)};
-      }
+      t.heights = heights_of(t, heights_);
       take(t);
     }
   }
@@ -219,9 +245,31 @@ void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, c
   floor.visit_best_first(tiles, cut_off, cost.io);
 }
 
+LivingTriangle FloorTriangle::living(const HeightEncoding& heights) const noexcept {
+  LivingTriangle t;
+  t.corner = corner;
+  t.is_void = is_void;
+  t.deviation = 0.0;
+  t.heights = heights_of(t, heights);
+  return t;
+}
+
+WeightedCodes FloorTriangle::codes(const HeightEncoding& heights) const noexcept {
+  // Of three corners from the least one around, the other two stand by their keys or the other way.
+  const std::size_t second = key_of(corner[1].position) < key_of(corner[2].position) ? 1 : 2;
+  WeightedCodes codes;
+  codes.count = 3;
+  std::size_t k = 0;
+  for (const std::size_t i : {std::size_t{0}, second, 3 - second}) {
+    codes.code[k] = heights.code(corner[i].height);
+    codes.weight[k++] = weight[i];
+  }
+  return codes;
+}
+
 const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint32_t row,
                                                 QueryCost& cost) {
-  Kept& kept = kept_[(column & 1) + 2 * (row & 1)];
+  Kept& kept = kept_[column % kKeptSide + kKeptSide * (row % kKeptSide)];
   if (kept.column != column || kept.row != row) {
     kept.column = UINT32_MAX;  // until it is read
     floor_.read(column, row, page_, kept.tile, cost.io);
@@ -230,6 +278,66 @@ const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint3
     kept.row = row;
   }
   return kept;
+}
+
+std::uint64_t FloorAtSpots::along(const FloorShape& shape, Spot spot) noexcept {
+  const auto tile = [&](std::int64_t v, std::uint32_t samples) {
+    const std::int64_t last = std::int64_t{samples} - 2;
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(v >> kSpotBits, 0, last) >>
+                                      shape.side_log2);
+  };
+  return FloorShape::key(tile(spot.x, shape.width), tile(spot.y, shape.height));
+}
+
+void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) const {
+  if (!floor_.is_far()) return;
+  std::vector<std::uint64_t> keys;
+  for (const Spot spot : spots) {
+    const std::optional<TileRange> tiles = tiles_of(floor_.facts().shape, cells_at(spot));
+    if (!tiles) continue;
+    for (std::uint32_t row = tiles->first_row; row <= tiles->last_row; ++row) {
+      for (std::uint32_t column = tiles->first_column; column <= tiles->last_column; ++column) {
+        keys.push_back(FloorShape::key(column, row));
+      }
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  floor_.announce(keys, counters);
+}
+
+std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, QueryCost& cost) {
+  constexpr std::int64_t kUnit = std::int64_t{1} << kSpotBits;
+  const FloorShape& shape = floor_.facts().shape;
+  const std::int64_t x = spot.x >> kSpotBits, y = spot.y >> kSpotBits;
+  const std::int64_t across = spot.x & (kUnit - 1), up = spot.y & (kUnit - 1);
+  if (across == 0 || up == 0 || x < 0 || y < 0 || x > std::int64_t{shape.width} - 2 ||
+      y > std::int64_t{shape.height} - 2) {
+    return std::nullopt;
+  }
+  const auto column = static_cast<std::uint32_t>(x >> shape.side_log2);
+  const auto row = static_cast<std::uint32_t>(y >> shape.side_log2);
+  const GridPoint first{static_cast<std::int32_t>(shape.first_of(column)),
+                        static_cast<std::int32_t>(shape.first_of(row))};
+  const CellCorners corners =
+      corners_of(tile_at(column, row, cost).tile, numbers_, first,
+                 static_cast<std::int32_t>(x) - first.x, static_cast<std::int32_t>(y) - first.y);
+  const Diagonal diagonal = cell_diagonal(cell_of(corners, heights_), corners[0].position);
+  const bool is_rising = diagonal == Diagonal::kRising;
+  // Above 0 in the cell's lower triangle: how far the spot lies below the diagonal.
+  const std::int64_t below = is_rising ? across - up : kUnit - across - up;
+  if (below == 0) return std::nullopt;
+  // The triangles of cell_triangles(), by constants: numbers that are only known here would have the
+  // corners read back from memory before they are all written there.
+  static_assert(cell_triangles(Diagonal::kRising) == CellTriangles{{{0, 1, 2}, {0, 2, 3}}});
+  static_assert(cell_triangles(Diagonal::kFalling) == CellTriangles{{{0, 1, 3}, {1, 2, 3}}});
+  const auto& [low_left, low_right, up_right, up_left] = corners;
+  if (is_rising) {
+    return below > 0 ? triangle_of(low_left, low_right, up_right, {kUnit - across, below, up})
+                     : triangle_of(low_left, up_right, up_left, {kUnit - up, across, -below});
+  }
+  return below > 0
+             ? triangle_of(low_left, low_right, up_left, {below, across, up})
+             : triangle_of(low_right, up_right, up_left, {kUnit - up, -below, kUnit - across});
 }
 
 void FloorAtSpots::visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,

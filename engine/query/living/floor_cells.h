@@ -7,15 +7,26 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "engine/geometry/box.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/living/raster_square.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/shape/spot.h"
+#include "engine/query/walk/walk.h"
 #include "storage/floor.h"
 
 namespace ptin {
+
+/// The heights from which a level is answered: those of the terrain, where it is the full TIN. Null: it
+/// is answered from stars.
+/// @throws Error as OpenedTerrain::floor()
+[[nodiscard]] inline const Floor* floor_for(const OpenedTerrain& terrain, const Detail& detail) {
+  return detail.is_full() ? terrain.floor() : nullptr;
+}
 
 /// What of the full TIN is wanted.
 struct FloorWish {
@@ -66,31 +77,61 @@ class BestCellVisitor {
 void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
                             BestCellVisitor& visitor, Merit cut_off, QueryCost& cost);
 
-/// The triangles of the full TIN at spots, one after the other. Threads: one owner.
+/// The triangle of the full TIN that holds a spot within, and the place of the spot in it.
+struct FloorTriangle {
+  std::array<LivingTriangle::Corner, 3> corner;  ///< Counter-clockwise, that of least key first.
+  std::array<std::int64_t, 3> weight;            ///< As weights_of(), all of them above 0.
+  bool is_void = false;
+
+  [[nodiscard]] LivingTriangle living(const HeightEncoding& heights) const noexcept;
+  /// REQUIRES: it is not void.  @return As codes_in().
+  [[nodiscard]] WeightedCodes codes(const HeightEncoding& heights) const noexcept;
+};
+
+/// The triangles of the full TIN at spots, one after the other: quickly, when these come tile by tile
+/// along the curve of the tiles. Threads: one owner.
 class FloorAtSpots {
  public:
   /// @param floor  Borrowed.
   FloorAtSpots(const Floor& floor, const HeightEncoding& heights)
-      : floor_(floor), heights_(heights) {}
+      : floor_(floor), numbers_(floor.numbers()), heights_(heights) {}
+
+  /// The place of a spot's tile along the curve. Spots in this order read and decode each tile once,
+  /// but for those of neighbours that spots on sides of tiles ask for.
+  /// REQUIRES: the spot lies on the raster.
+  [[nodiscard]] static std::uint64_t along(const FloorShape& shape, Spot spot) noexcept;
+  /// Has what the next spots read come together from a file that lies elsewhere: a round for each level of
+  /// nodes and one for the pages. Else nothing.
+  /// @throws Error corruption, io_error
+  /// Cost: 8 bytes a spot, sorted.
+  void announce(std::span<const Spot> spots, IoCounters& counters) const;
+
+  /// The triangle around a spot that lies on no side of a triangle; none: it lies on one, or beside the
+  /// raster.
+  /// @throws Error corruption, io_error
+  /// Cost: its tile, where that is not one of the spots before; else some nanoseconds.
+  [[nodiscard]] std::optional<FloorTriangle> within(Spot spot, QueryCost& cost);
 
   /// Calls take(t) for the triangles of the cells that hold a spot: one cell, two where it lies on a
   /// side, four on a sample, fewer on the border. Beside the raster there is none.
   /// @throws Error corruption, io_error
-  /// Cost: the tiles of these cells, where they are not those of the spot before.
+  /// Cost: the tiles of these cells, where they are not those of spots before.
   void visit(Spot spot, const std::function<void(const LivingTriangle&)>& take, QueryCost& cost);
 
  private:
-  /// A tile that was read: neighbours have different places here.
+  /// A tile that was read: tiles near each other have different places here.
   struct Kept {
     std::uint32_t column = UINT32_MAX, row = UINT32_MAX;
     FloorTile tile;
   };
+  static constexpr std::uint32_t kKeptSide = 2;
   [[nodiscard]] const Kept& tile_at(std::uint32_t column, std::uint32_t row, QueryCost& cost);
 
   const Floor& floor_;
+  FloorNumbers numbers_;
   HeightEncoding heights_;
   Floor::Page page_;
-  std::array<Kept, 4> kept_;
+  std::array<Kept, kKeptSide * kKeptSide> kept_;
 };
 
 }  // namespace ptin

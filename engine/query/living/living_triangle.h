@@ -4,6 +4,7 @@
 // section 2.10).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,17 @@ struct LivingTriangle {
 
 [[nodiscard]] inline GridBox box_of(const LivingTriangle& t) noexcept {
   return united(united(box_of(t.corner[0].position), t.corner[1].position), t.corner[2].position);
+}
+
+/// The same triangle with the corner of least key first: what is computed from its corners in order is
+/// then the same in every bit, however the triangle was found.
+[[nodiscard]] inline LivingTriangle begun_with_least(LivingTriangle t) noexcept {
+  const auto by_key = [](const LivingTriangle::Corner& a, const LivingTriangle::Corner& b) {
+    return key_of(a.position) < key_of(b.position);
+  };
+  std::rotate(t.corner.begin(), std::min_element(t.corner.begin(), t.corner.end(), by_key),
+              t.corner.end());
+  return t;
 }
 
 /// A triangle of a mesh, of whose maker nothing is known.

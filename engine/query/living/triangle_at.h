@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/living/spot_in_triangle.h"
 #include "engine/query/select/accounting.h"
@@ -28,6 +29,10 @@ struct TriangleAt {
   bool is_inside = false;  ///< The spot lies on no side, so that no other triangle holds it.
 };
 
+/// The same of the full TIN of a raster, for a spot that is not FloorAtSpots::within() one.
+/// @throws Error corruption, io_error
+[[nodiscard]] TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, QueryCost& cost);
+
 /// Finds the triangles at spots.
 /// @param detail Of which level.
 /// @param spots  In the bounds of the terrain. Spots that lie close together cost less.
@@ -35,7 +40,8 @@ struct TriangleAt {
 /// @param held   Bytes that the caller holds, to which triangles are added that a number of vertices
 ///               has not decided yet (LivingTies).
 /// @throws Error corruption, io_error, cancelled; resource_exhausted where these do not fit
-/// Cost: of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
+/// Cost: of the full TIN of a file with heights of a raster the tiles of the spots (FloorAtSpots). Else
+/// of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
 /// a triangle holds it within; of many spots in a small region the pages of the region.
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context);

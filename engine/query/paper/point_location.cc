@@ -63,7 +63,7 @@ LocateResult locate(const OpenedTerrain& terrain, std::span<const MapPoint> poin
                     const LocateRequest& request) {
   return locate_in_groups(terrain, points, request, [&](const PointGroup& group) {
     work_in_parts(group.points, [&](std::span<const PointOnCurve> some) {
-      return locate_group(terrain, {some, group.answers, group.detail, group.context});
+      return locate_group(terrain, {some, group.answers, group.floor, group.detail, group.context});
     });
   });
 }

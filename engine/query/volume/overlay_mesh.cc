@@ -79,7 +79,7 @@ bool OverlayMesh::begin(std::size_t most_triangles) {
 }
 
 void OverlayMesh::take(const LivingTriangle& t) {
-  if (meets(box_around(corners(t)), near_)) triangles_.push_back(t);
+  if (meets(box_around(corners(t)), near_)) triangles_.push_back(begun_with_least(t));
 }
 
 }  // namespace ptin

@@ -138,7 +138,9 @@ class LevelWorker final : public TileWorker, private LivingVisitor {
   void take(const LivingTriangle& t) override {
     std::array<VertexKey, 3> keys{};
     for (std::size_t i = 0; i < 3; ++i) keys[i] = key_of(t.corner[i].position);
-    if (contains(tile_, point_of(*std::min_element(keys.begin(), keys.end())))) count_triangle(t);
+    if (contains(tile_, point_of(*std::min_element(keys.begin(), keys.end())))) {
+      count_triangle(begun_with_least(t));
+    }
     for (std::size_t i = 0; i < 3 && border_; ++i) {
       const auto [low, high] = std::minmax(keys[i], keys[i == 2 ? 0 : i + 1]);
       if (contains(tile_, point_of(low)) || contains(tile_, point_of(high))) {
@@ -231,7 +233,8 @@ class OverlayWorker final : public TileWorker, private LivingVisitor {
   [[nodiscard]] std::uint64_t bytes_wanted() const override { return overlay_.bytes_wanted(); }
 
  private:
-  void take(const LivingTriangle& t) override {
+  void take(const LivingTriangle& found) override {
+    const LivingTriangle t = begun_with_least(found);
     Overlaid here{t, above_level(t, side_.facts().heights, 0.0), {}, 0.0};
     const auto& c = here.height.corners;
     here.shape = ConvexPiece(c[0], c[1], c[2]);

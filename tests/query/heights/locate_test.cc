@@ -147,7 +147,7 @@ void expect_same(const LocatedPoint& a, const LocatedPoint& b) {
 }
 
 /// The paper's way is the oracle: state, height, interval and triangle are the same, bit for bit.
-TEST(Locate, AnswersByStarsAsBySplits) {
+TEST(Locate, AnswersByHeightsAndStarsAsBySplits) {
   for (const auto& [name, max_error] : {std::pair{"mountains_257.tif", 0.0},
                                         {"mountains_257.tif", 3.0},
                                         {"coast_257.tif", 0.0},
@@ -162,9 +162,14 @@ TEST(Locate, AnswersByStarsAsBySplits) {
                                       << level.vertices.value_or(0));
       LocateRequest request;
       request.detail = level;
-      const LocateResult stars = locate(terrain, points, request);
-      const LocateResult few = locate(terrain, std::span(points).first(40), request);
+      const LocateResult best = terrain.locate(points, request);
+      const LocateResult stars = terrain.locate(points, request, AnswerBy::kStars);
+      const LocateResult few =
+          terrain.locate(std::span(points).first(40), request, AnswerBy::kStars);
       const LocateResult splits = terrain.locate(points, request, AnswerBy::kSplits);
+      const bool has_heights = max_error == 0 && !level.tolerance && !level.vertices;
+      EXPECT_EQ(best.cost.stars_read == 0, has_heights || stars.cost.stars_read == 0);
+      EXPECT_LE(best.cost.io.pages, stars.cost.io.pages);
       EXPECT_EQ(stars.certified_error, splits.certified_error);
       EXPECT_EQ(stars.certified_deviation, splits.certified_deviation);
       EXPECT_EQ(stars.cost.records_applied, 0U);
@@ -172,6 +177,7 @@ TEST(Locate, AnswersByStarsAsBySplits) {
       EXPECT_TRUE(stars.cost.stars_read > 0 || is_t0);
       EXPECT_EQ(splits.cost.stars_read, 0U);
       for (std::size_t i = 0; i < points.size(); ++i) {
+        expect_same(best.points[i], splits.points[i]);
         expect_same(stars.points[i], splits.points[i]);
         if (i < few.points.size()) expect_same(few.points[i], splits.points[i]);
         if (HasFailure()) return;

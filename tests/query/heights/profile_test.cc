@@ -156,8 +156,8 @@ RC_GTEST_PROP(SpotPath, HoldsWhereABoxMeetsASegment, (std::uint64_t seed)) {
   }
 }
 
-TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
-  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+/// Pieces are read one after the other, so that what lies near their ends is read twice.
+void answers_pieces(const Terrain& terrain) {
   const StoreFacts& f = terrain.store().facts();
   std::mt19937_64 random(5);
   std::vector<MapPoint> track;
@@ -170,7 +170,7 @@ TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
   ProfileRequest request;
   request.limits.memory_bytes = free.points.size() * sizeof(ProfilePoint) * 3 / 2;
   const ProfileResult tight = profile(terrain, track, request);
-  EXPECT_GT(tight.cost.stars_read, free.cost.stars_read) << "it was not cut";
+  EXPECT_GT(tight.cost.io.pages, free.cost.io.pages) << "it was not cut";
   ASSERT_EQ(tight.points.size(), free.points.size());
   for (std::size_t i = 0; i < free.points.size(); ++i) {
     ASSERT_EQ(tight.points[i].distance, free.points[i].distance);
@@ -178,6 +178,18 @@ TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
   }
   request.limits.memory_bytes = 1000;
   EXPECT_THROW(static_cast<void>(profile(terrain, track, request)), Error);
+}
+
+Terrain by_stars(const Terrain& terrain) {
+  Terrain stars = terrain;
+  stars.use_floor(false);
+  return stars;
+}
+
+TEST(Profile, AnswersThePiecesOfALineThatDoesNotFitTheMemory) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  answers_pieces(terrain);
+  answers_pieces(by_stars(terrain));
 }
 
 TEST(Profile, KeepsLinesApart) {
@@ -201,8 +213,7 @@ TEST(Profile, KeepsLinesApart) {
   EXPECT_EQ(i, both.points.size());
 }
 
-TEST(Profile, SharesPagesAndKeepsTheOrderOfManyLines) {
-  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+void shares_pages(const Terrain& terrain) {
   const StoreFacts& f = terrain.store().facts();
   std::mt19937_64 random(8);
   const auto at = [&](double x, double y) {
@@ -225,7 +236,7 @@ TEST(Profile, SharesPagesAndKeepsTheOrderOfManyLines) {
     for (std::uint32_t line = 0; line < lines.size(); ++line) {
       if (lines[line][0] == lines[line][1]) continue;
       const ProfileResult one = profile(terrain, lines[line]);
-      alone += one.cost.records_examined;
+      alone += one.cost.io.pages;
       for (const ProfilePoint& p : one.points) {
         ASSERT_LT(i, all.points.size());
         ASSERT_EQ(all.points[i].line, line);
@@ -239,8 +250,14 @@ TEST(Profile, SharesPagesAndKeepsTheOrderOfManyLines) {
       }
     }
     EXPECT_EQ(i, all.points.size());
-    EXPECT_LT(all.cost.records_examined, alone / 2);
+    EXPECT_LT(all.cost.io.pages, alone / 2);
   }
+}
+
+TEST(Profile, SharesPagesAndKeepsTheOrderOfManyLines) {
+  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
+  shares_pages(terrain);
+  shares_pages(by_stars(terrain));
 }
 
 /// The breaks of a line are all there and as they were, every point else is a station, and a station
