@@ -350,7 +350,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   require_unchanged(job);
   job.tell(StageProgress{"writing", 0, 1});
   if (source.add_floor) {
-    store.add_floor([&](StoreWriter& writer) { source.add_floor(writer, job.resources.stop); });
+    store.add_floor(
+        [&](StoreWriter& writer) { return source.add_floor(writer, job.resources.stop); });
   }
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});
