@@ -29,13 +29,13 @@ struct RasterTarget {
   bool is_cog = false;
   PixelContent content;
   double nodata = -9999.0;
-  /// Of heights: the type of pixels; none: type_of_pixels().
-  std::optional<GDALDataType> type;
   std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; they override ours.
   CrsFacts crs;
   /// For GDAL's cache.
   std::uint64_t cache_bytes = std::uint64_t{64} << 20;
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
+  /// Of heights: the type of pixels; none: type_of_pixels().
+  std::optional<GDALDataType> type = std::nullopt;
 };
 
 /// What a raster is, beside the values of its pixels.

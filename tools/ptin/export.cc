@@ -308,11 +308,11 @@ RasterTarget raster_target(const ExportFormat& format, const ExportOptions& opti
           format.is_cog,
           content,
           options.nodata.value_or(default_nodata(store.facts(), content.value, type)),
-          type,
           options.creation_options,
           crs_facts(store),
           memory.buffers,
-          memory.index};
+          memory.index,
+          type};
 }
 
 Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,

@@ -227,7 +227,7 @@ KeptRaster RasterSource::kept() const {
   } else if (shape.is_masked) {
     kept.lost = "the mask that told which samples count";
   } else if (kept.number == SourceNumber::kUnknown) {
-    kept.lost = "the type of its numbers, " + shape.type_name + ",";
+    kept.lost = "the type " + shape.type_name + " of its numbers";
   } else if (is_scaled && shape.raw != RawType::kInt32) {
     kept.lost = "each of the numbers that a scale and an offset made heights";
   }

@@ -248,8 +248,8 @@ void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers
       copy_floor(
           *floor_, facts_.heights, centres, buffers,
           [this] {
-            context_.check_stop();
             tell_progress(0);
+            context_.check_stop();
           },
           context_.cost.io);
     } else if (is_sparse(centres)) {
