@@ -100,7 +100,7 @@ ask::Fields<Exported> exported_fields() {
              of_changes(&ClassChanges::to_surface));
   fields.add("lone_samples", "integer", "",
              "Of the whole source, as `build` counted them: they are void, and no certificate "
-             "speaks of them. 0 with `--source`, which writes them.",
+             "speaks of them. 0 with `--source`.",
              &Row::lone_samples);
   return fields;
 }
