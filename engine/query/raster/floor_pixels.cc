@@ -17,6 +17,12 @@ using Line = PixelCentres::GridLine;
 /// Tiles between two calls of `between`: a millisecond's.
 constexpr std::size_t kTilesBetween = 512;
 
+/// Whether each position is one more than that before it.
+bool is_run(const std::vector<std::int32_t>& at) {
+  return std::adjacent_find(at.begin(), at.end(),
+                            [](std::int32_t a, std::int32_t b) { return b - a != 1; }) == at.end();
+}
+
 /// The tile that copies a sample: the one that begins with it, but at the end of the raster.
 std::uint32_t tile_of(const FloorShape& shape, std::int32_t sample, std::uint32_t tiles) {
   return std::min(static_cast<std::uint32_t>(sample) >> shape.side_log2, tiles - 1);
@@ -64,6 +70,7 @@ class PixelsOfTiles {
         width_(centres.width()),
         columns_(centres.columns_on_grid()),
         rows_(centres.rows_on_grid()),
+        is_run_(!columns_.descends && is_run(columns_.at)),
         buffers_(buffers) {}
 
   [[nodiscard]] const Line& columns() const noexcept { return columns_; }
@@ -108,7 +115,7 @@ class PixelsOfTiles {
     const std::int32_t* const at = columns_.at.data() + columns.begin;
     const std::int32_t first = at[0];
     const OrderedHeight* const samples = tile.heights.data() + from;
-    if (at[count - 1] - first + 1 == static_cast<std::int32_t>(count) && !columns_.descends) {
+    if (is_run_) {
       const OrderedHeight* const run = samples + (first - left);
       double* const to = buffers_.heights.data() + place;
       for (std::size_t i = 0; i < count; ++i) to[i] = heights_.height_of_code(code(run[i]));
@@ -144,6 +151,7 @@ class PixelsOfTiles {
   const HeightEncoding heights_;
   const std::size_t width_;
   const Line columns_, rows_;
+  const bool is_run_;  ///< Columns follow one another as samples do.
   const PixelBuffers<double> buffers_;
 };
 

@@ -107,7 +107,10 @@ RasterRequest random_floor_request(std::mt19937_64& random, const StoreFacts& fa
       facts.map.to_map(static_cast<double>(below(90)) + off, static_cast<double>(below(90)));
   request.lattice.step_x = facts.map.step_x * step();
   request.lattice.step_y = facts.map.step_y * step();
-  if (random() % 3 == 0) request.lattice.margin = {facts.map.step_x / 2, facts.map.step_y / 2};
+  if (random() % 3 == 0) {
+    const double margin = random() % 2 == 0 ? 0.5 : 2.5;
+    request.lattice.margin = {facts.map.step_x * margin, facts.map.step_y * margin};
+  }
   request.pixels = {below(40) - 30, below(40) - 30, 1 + below(130), 1 + below(130)};
   return request;
 }
