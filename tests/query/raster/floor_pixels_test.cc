@@ -32,7 +32,7 @@ using reference::same_number;
 std::string random_raster(const test::TestFolder& folder, std::mt19937_64& random) {
   GDALAllRegister();
   const auto below = [&](std::uint64_t n) { return static_cast<int>(random() % n); };
-  const int width = 2 + below(90), height = 2 + below(90), kind = below(3);
+  const int width = 2 + below(70), height = 2 + below(70), kind = below(3);
   const double share_void = std::vector<double>{0, 0.02, 0.4, 0.95}[random() % 4];
   std::string path = folder.file("r.tif");
   const GDALDatasetUniquePtr data(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
