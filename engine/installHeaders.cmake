@@ -146,6 +146,7 @@ set(program_headers
     engine/query/shape/tiler.h
     storage/file/file_questions.h
     storage/file_beginning.h
+    storage/floor.h
     storage/index_shape.h
     storage/spatialindex_rtree.h)
 if(WITH_MPI)
