@@ -180,15 +180,12 @@ class SourceWriter {
                   sizeof(T));
     const std::span<T> values(reinterpret_cast<T*>(bytes_.data()), bytes_.size() / sizeof(T));
     std::fill(values.begin(), values.end(), void_value<T>());
-    const FloorShape& shape = floor_.facts().shape;
-    const auto tile = [&](std::int64_t sample, std::uint32_t tiles) {
-      return std::min(static_cast<std::uint32_t>(sample) >> shape.side_log2, tiles - 1);
-    };
     floor_.visit(
-        {tile(columns_.low, shape.columns()), tile(rows_.low, shape.rows()),
-         tile(columns_.high, shape.columns()), tile(rows_.high, shape.rows())},
-        [](const Floor::TileBounds&) { return true; },
-        [&](const Floor::TileBounds& at, const FloorTile& samples) {
+        [&](const Floor::Bounds& b) {
+          return b.box.max_x >= columns_.low && b.box.min_x <= columns_.high &&
+                 b.box.max_y >= rows_.low && b.box.min_y <= rows_.high;
+        },
+        [&](const Floor::TileAt& at, const FloorTile& samples) {
           take<T>(at, samples, values);
           return true;
         },
@@ -197,7 +194,7 @@ class SourceWriter {
   }
 
   template <class T>
-  void take(const Floor::TileBounds& at, const FloorTile& tile, std::span<T> values) const {
+  void take(const Floor::TileAt& at, const FloorTile& tile, std::span<T> values) const {
     const std::int64_t left = floor_.facts().shape.first_of(at.column);
     const std::int64_t low = floor_.facts().shape.first_of(at.row);
     const std::int64_t first = std::max(columns_.low, left);

@@ -38,7 +38,7 @@ class LineTiles {
  public:
   /// @param tiles  Along the whole raster.
   LineTiles(const FloorShape& shape, const Line& line, std::uint32_t tiles)
-      : first_(tile_of(shape, line.at.front(), tiles)) {
+      : side_log2_(shape.side_log2), first_(tile_of(shape, line.at.front(), tiles)) {
     for (std::size_t i = 0; i < line.at.size(); ++i) {
       begins_.resize(tile_of(shape, line.at[i], tiles) - first_ + 1, i);
     }
@@ -51,12 +51,17 @@ class LineTiles {
   [[nodiscard]] Stretch of(std::uint32_t tile) const noexcept {
     return {begins_[tile - first_], begins_[tile - first_ + 1]};
   }
-  [[nodiscard]] bool has(std::uint32_t tile) const noexcept {
-    return of(tile).begin < of(tile).end;
+  /// Whether one of the tiles whose samples are those from `least` to `greatest` has a centre: the last
+  /// sample of a tile is the next one's first.
+  [[nodiscard]] bool has(std::int32_t least, std::int32_t greatest) const noexcept {
+    const auto from = std::max(first_, static_cast<std::uint32_t>(least) >> side_log2_);
+    const auto to =
+        std::min(last(), static_cast<std::uint32_t>(std::max(greatest - 1, least)) >> side_log2_);
+    return from <= to && of(from).begin < of(to).end;
   }
 
  private:
-  std::uint32_t first_;
+  std::uint32_t side_log2_, first_;
   std::vector<std::size_t> begins_;  ///< Of each tile; where it has none, that of the next one.
 };
 
@@ -76,7 +81,7 @@ class PixelsOfTiles {
   [[nodiscard]] const Line& columns() const noexcept { return columns_; }
   [[nodiscard]] const Line& rows() const noexcept { return rows_; }
 
-  void copy(const Floor::TileBounds& at, const FloorTile& tile, Stretch columns, Stretch rows) {
+  void copy(const Floor::TileAt& at, const FloorTile& tile, Stretch columns, Stretch rows) {
     const auto left = static_cast<std::int32_t>(shape_.first_of(at.column));
     const auto low = static_cast<std::int32_t>(shape_.first_of(at.row));
     for (std::size_t j = rows.begin; j < rows.end; ++j) {
@@ -176,9 +181,10 @@ void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCe
   const LineTiles rows(shape, pixels.rows(), shape.rows());
   std::size_t tiles = 0;
   floor.visit(
-      {columns.first(), rows.first(), columns.last(), rows.last()},
-      [&](const Floor::TileBounds& at) { return columns.has(at.column) && rows.has(at.row); },
-      [&](const Floor::TileBounds& at, const FloorTile& tile) {
+      [&](const Floor::Bounds& b) {
+        return columns.has(b.box.min_x, b.box.max_x) && rows.has(b.box.min_y, b.box.max_y);
+      },
+      [&](const Floor::TileAt& at, const FloorTile& tile) {
         if (tiles++ % kTilesBetween == 0) between();
         pixels.copy(at, tile, columns.of(at.column), rows.of(at.row));
         return true;
