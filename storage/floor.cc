@@ -63,34 +63,49 @@ layout::FloorNode Floor::read_node(const Found& found) const {
   return node;
 }
 
-layout::FloorNode Floor::node(const Found& found, IoCounters& counters) const {
-  ++counters.index_nodes;
-  counters.bytes_read += layout::kNodeBytes;
+void Floor::take_node(const Found& found, layout::FloorNode& node, IoCounters& counters) const {
   const std::uint64_t position = tree_.position(found.level, found.number);
-  if (position == 0) return root_;
   Slot& slot = slots_[position % kSlots];
   {
     const std::lock_guard lock(slot.lock);
-    if (slot.position == position) return *slot.node;
+    if (slot.position == position) {
+      node = *slot.node;
+      return;
+    }
   }
-  const layout::FloorNode read = read_node(found);
+  node = read_node(found);
   file_.settle(counters);
   const std::lock_guard lock(slot.lock);
   slot.position = UINT64_MAX;  // where there is no memory, it holds none
   if (slot.node == nullptr) slot.node = std::make_unique<layout::FloorNode>();
-  *slot.node = read;
+  *slot.node = node;
   slot.position = position;
-  return read;
+}
+
+const layout::FloorNode& Floor::node(const Found& found, Recent& recent,
+                                     IoCounters& counters) const {
+  const std::uint64_t position = tree_.position(found.level, found.number);
+  if (position == 0) return root_;
+  Recent::Node& kept = recent.nodes_[position % recent.nodes_.size()];
+  if (kept.position == position) return *kept.node;
+  ++counters.index_nodes;
+  counters.bytes_read += layout::kNodeBytes;
+  kept.position = UINT64_MAX;  // until it is verified
+  if (kept.node == nullptr) kept.node = std::make_unique<layout::FloorNode>();
+  take_node(found, *kept.node, counters);
+  kept.position = position;
+  return *kept.node;
 }
 
 Floor::Found Floor::root() const noexcept {
   return {0, UINT64_MAX, {0, 0, 0, place_.root_checksum}, 0};
 }
 
-Floor::Found Floor::find(std::uint64_t key, std::size_t depth, IoCounters& counters) const {
+Floor::Found Floor::find(std::uint64_t key, std::size_t depth, Recent& recent,
+                         IoCounters& counters) const {
   Found found = root();
   while (found.level < depth) {
-    const layout::FloorNode here = node(found, counters);
+    const layout::FloorNode& here = node(found, recent, counters);
     const auto end = here.entry.begin() + here.entries;
     const auto after =
         std::upper_bound(here.entry.begin(), end, key,
@@ -103,24 +118,27 @@ Floor::Found Floor::find(std::uint64_t key, std::size_t depth, IoCounters& count
   return found;
 }
 
-void Floor::announce(std::span<const std::uint64_t> keys, IoCounters& counters) const {
+void Floor::announce(std::span<const std::uint64_t> keys, Recent& recent,
+                     IoCounters& counters) const {
   if (!is_far()) return;
-  IoCounters counted_when_read;
   for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) {
     std::vector<Found> found;
     for (auto key = keys.begin(); key != keys.end();) {
-      found.push_back(find(*key, depth, counted_when_read));
+      found.push_back(find(*key, depth, recent, counters));
       key = std::lower_bound(key, keys.end(), found.back().end);
     }
-    announce(found, counters);
+    announce(found, recent, counters);
   }
 }
 
-void Floor::read_page(const Found& found, Page& page, IoCounters& counters) const {
-  if (page.number_ == found.number) return;
-  page.number_ = UINT64_MAX;  // until it is verified
-  page.bytes_.resize(layout::kFloorPageBytes + kFloorTileTail);
-  const std::span<std::byte> bytes = std::span(page.bytes_).first(layout::kFloorPageBytes);
+const Floor::Recent::Page& Floor::read_page(const Found& found, Recent& recent,
+                                            IoCounters& counters) const {
+  Recent::Page& page = recent.pages_[found.number % recent.pages_.size()];
+  recent.last_ = &page;
+  if (page.number == found.number) return page;
+  page.number = UINT64_MAX;  // until it is verified
+  page.bytes.resize(layout::kFloorPageBytes + kFloorTileTail);
+  const std::span<std::byte> bytes = std::span(page.bytes).first(layout::kFloorPageBytes);
   file_.read_at(bytes, place_.offset_of_page(found.number));
   ++counters.pages;
   ++counters.pages_verified;
@@ -134,9 +152,10 @@ void Floor::read_page(const Found& found, Page& page, IoCounters& counters) cons
     damaged("a page of heights has tiles of the next one");
   }
   file_.settle(counters);
-  page.number_ = found.number;
-  page.first_ = found.entry.first;
-  page.end_ = found.end;
+  page.number = found.number;
+  page.first = found.entry.first;
+  page.end = found.end;
+  return page;
 }
 
 /// Whether all heights are such as numbers of the file's type can be.
@@ -153,7 +172,7 @@ bool Floor::has_heights(const FloorTile& tile) const {
          });
 }
 
-void Floor::decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
+void Floor::decode(const Recent::Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
                    FloorTile& tile) const {
   const FloorShape& shape = facts_.shape;
   const char* const fault =
@@ -163,15 +182,16 @@ void Floor::decode(const Page& page, std::size_t i, std::uint32_t column, std::u
   if (!has_heights(tile)) damaged("a tile of heights has a height that is no number");
 }
 
-void Floor::read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
+void Floor::read(std::uint32_t column, std::uint32_t row, Recent& recent, FloorTile& tile,
                  IoCounters& counters) const {
   const std::uint64_t key = FloorShape::key(column, row);
-  if (page.number_ == UINT64_MAX || key < page.first_ || key >= page.end_) {
-    read_page(find(key, tree_.levels(), counters), page, counters);
+  const Recent::Page* page = recent.last_;
+  if (page->number == UINT64_MAX || key < page->first || key >= page->end) {
+    page = &read_page(find(key, tree_.levels(), recent, counters), recent, counters);
   }
-  const std::optional<std::size_t> i = page.view().tile_with(key - page.first_);
+  const std::optional<std::size_t> i = page->view().tile_with(key - page->first);
   if (!i) damaged("a tile of heights is on no page");
-  decode(page, *i, column, row, tile);
+  decode(*page, *i, column, row, tile);
 }
 
 }  // namespace ptin

@@ -3,6 +3,7 @@
 // The heights of the raster that a file was built from, read tile by tile.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -37,23 +38,34 @@ struct FloorPlace {
 };
 
 /// Reads pages of heights, and verifies each before its tiles are seen: an entry of a node holds the
-/// checksum of what it describes, and the section table that of the root. The root stays in memory; as in
-/// the index, a node counts whenever its entries are looked at. Threads: const functions may be called at
-/// once.
+/// checksum of what it describes, and the section table that of the root. The root is
+/// read at the making and stays in memory. Threads: const functions may be called at once.
 class Floor {
  public:
-  /// A page that was read last, for tiles that lie on it, too. A value of its caller's.
-  class Page {
+  /// What a question has read lately, and so does not read again, nor count: parts of a line, or of a
+  /// place, share pages. A value of its caller's. Memory: 4 KiB for each of at most 80 nodes and pages.
+  /// Threads: one owner.
+  class Recent {
    public:
-    [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
+    /// The page that was looked at last.
+    [[nodiscard]] std::uint64_t page() const noexcept { return last_->number; }
 
    private:
     friend class Floor;
-    [[nodiscard]] FloorPageView view() const noexcept {
-      return FloorPageView(std::span(bytes_).first(layout::kFloorPageBytes));
-    }
-    std::uint64_t number_ = UINT64_MAX, first_ = 0, end_ = 0;  ///< From a key to another.
-    std::vector<std::byte> bytes_;
+    struct Page {
+      std::uint64_t number = UINT64_MAX, first = 0, end = 0;  ///< From a key to another.
+      std::vector<std::byte> bytes;
+      [[nodiscard]] FloorPageView view() const noexcept {
+        return FloorPageView(std::span(bytes).first(layout::kFloorPageBytes));
+      }
+    };
+    struct Node {
+      std::uint64_t position = UINT64_MAX;
+      std::unique_ptr<layout::FloorNode> node;
+    };
+    std::array<Page, 64> pages_;
+    std::array<Node, 16> nodes_;
+    const Page* last_ = &pages_[0];
   };
 
   /// Reads the root.
@@ -72,7 +84,7 @@ class Floor {
   /// nodes below the root, and one for the pages. Else nothing.
   /// @param keys  FloorShape::key() of tiles, ascending.
   /// @throws Error corruption, io_error
-  void announce(std::span<const std::uint64_t> keys, IoCounters& counters) const;
+  void announce(std::span<const std::uint64_t> keys, Recent& recent, IoCounters& counters) const;
 
   /// What is known of samples before they are read.
   struct Bounds {
@@ -94,7 +106,7 @@ class Floor {
   /// @throws Error corruption, io_error; what the functions throw
   /// Cost: the nodes and pages that hold such tiles, of a far file a round for each level of nodes and one
   /// for the pages.
-  bool visit(const std::function<bool(const Bounds&)>& wants, const TakeTile& take,
+  bool visit(const std::function<bool(const Bounds&)>& wants, const TakeTile& take, Recent& recent,
              IoCounters& counters) const;
 
   /// The caller's part of a best-first search.
@@ -115,14 +127,14 @@ class Floor {
   };
   /// Reads tiles by pages of falling merit until the cut-off is above all that is left.
   /// @throws Error corruption, io_error; what the visitor throws
-  void visit_best_first(BestVisitor& visitor, Merit cut_off, IoCounters& counters) const;
+  void visit_best_first(BestVisitor& visitor, Merit cut_off, Recent& recent,
+                        IoCounters& counters) const;
 
   /// Reads a tile.
-  /// @param page  That of an earlier call is not read again where it holds this tile.
   /// REQUIRES: there is such a column and row of tiles.
   /// @throws Error corruption, io_error
   /// Cost: a node a level and a page, about 3 us where the system has them; 1 ns a sample.
-  void read(std::uint32_t column, std::uint32_t row, Page& page, FloorTile& tile,
+  void read(std::uint32_t column, std::uint32_t row, Recent& recent, FloorTile& tile,
             IoCounters& counters) const;
 
  private:
@@ -143,25 +155,30 @@ class Floor {
     Merit merit = kNoMerit;
   };
   [[nodiscard]] layout::FloorNode read_node(const Found& found) const;
-  [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
+  /// A node, copied from those that were verified before, or read.
+  void take_node(const Found& found, layout::FloorNode& node, IoCounters& counters) const;
+  /// The result is there until the next call.
+  [[nodiscard]] const layout::FloorNode& node(const Found& found, Recent& recent,
+                                              IoCounters& counters) const;
   using Bound = std::function<Merit(const Bounds&)>;
   [[nodiscard]] Found root() const noexcept;
   /// The page that holds a key; the node above it, `depth` levels below the root, where that is less deep.
-  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, IoCounters& counters) const;
+  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, Recent& recent,
+                           IoCounters& counters) const;
   /// What of a node's entries is not below the cut-off, along the curve.
-  void expand(const Found& node, const Bound& bound, Merit cut_off, std::vector<Found>& below,
-              IoCounters& counters) const;
+  void expand(const Found& found, const Bound& bound, Merit cut_off, std::vector<Found>& below,
+              Recent& recent, IoCounters& counters) const;
   /// The pages that are not below the cut-off, along the curve.
-  [[nodiscard]] std::vector<Found> find_pages(const Bound& bound, Merit cut_off,
+  [[nodiscard]] std::vector<Found> find_pages(const Bound& bound, Merit cut_off, Recent& recent,
                                               IoCounters& counters) const;
-  void announce(const std::vector<Found>& found, IoCounters& counters) const;
+  void announce(const std::vector<Found>& found, const Recent& recent, IoCounters& counters) const;
   [[nodiscard]] Bounds bounds_of(const TileRange& tiles, OrderedHeight least,
                                  OrderedHeight greatest) const;
-  void read_page(const Found& found, Page& page, IoCounters& counters) const;
+  const Recent::Page& read_page(const Found& found, Recent& recent, IoCounters& counters) const;
   /// Visits the tiles of a page; false when `visit` ended it.
   template <class Visit>
-  bool visit_tiles(const Page& page, const Visit& visit) const;
-  void decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
+  bool visit_tiles(const Recent::Page& page, const Visit& visit) const;
+  void decode(const Recent::Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
               FloorTile& tile) const;
   [[nodiscard]] bool has_heights(const FloorTile& tile) const;
   [[noreturn]] void damaged(const char* what) const;

@@ -125,8 +125,8 @@ Floor::Bounds Floor::bounds_of(const TileRange& tiles, OrderedHeight least,
 }
 
 void Floor::expand(const Found& found, const Bound& bound, Merit cut_off, std::vector<Found>& below,
-                   IoCounters& counters) const {
-  const layout::FloorNode here = node(found, counters);
+                   Recent& recent, IoCounters& counters) const {
+  const layout::FloorNode& here = node(found, recent, counters);
   const EntriesOfNode entries(facts_.shape, here, found.end, cut_off,
                               [&](const TileRange& tiles, const FloorBounds& heights) {
                                 return bound(bounds_of(tiles, heights.least, heights.greatest));
@@ -139,38 +139,43 @@ void Floor::expand(const Found& found, const Bound& bound, Merit cut_off, std::v
   }
 }
 
-void Floor::announce(const std::vector<Found>& found, IoCounters& counters) const {
+void Floor::announce(const std::vector<Found>& found, const Recent& recent,
+                     IoCounters& counters) const {
+  const auto is_recent = [&](const Found& f) {
+    return f.level == tree_.levels() &&
+           recent.pages_[f.number % recent.pages_.size()].number == f.number;
+  };
   RangesToCome ranges(file_, counters);
   for (const bool is_page : {false, true}) {
     RangeJoiner joiner(is_page ? place_.pages.offset : place_.nodes.offset, layout::kFloorPageBytes,
                        ranges);
     for (const Found& f : found) {
-      if ((f.level == tree_.levels()) == is_page) {
+      if ((f.level == tree_.levels()) == is_page && !is_recent(f)) {
         joiner.add(is_page ? f.number : tree_.position(f.level, f.number) - 1);
       }
     }
   }
 }
 
-std::vector<Floor::Found> Floor::find_pages(const Bound& bound, Merit cut_off,
+std::vector<Floor::Found> Floor::find_pages(const Bound& bound, Merit cut_off, Recent& recent,
                                             IoCounters& counters) const {
   std::vector<Found> found{root()}, below;
   for (std::size_t level = 0; level < tree_.levels(); ++level) {
     below.clear();
-    for (const Found& node : found) expand(node, bound, cut_off, below, counters);
+    for (const Found& node : found) expand(node, bound, cut_off, below, recent, counters);
     found.swap(below);
     const bool are_pages = level + 1 == tree_.levels();
     // Nodes of a near file are at hand, most of them verified before.
-    if (are_pages || file_.is_far()) announce(found, counters);
+    if (are_pages || file_.is_far()) announce(found, recent, counters);
   }
   return found;
 }
 
 template <class Visit>
-bool Floor::visit_tiles(const Page& page, const Visit& visit) const {
+bool Floor::visit_tiles(const Recent::Page& page, const Visit& visit) const {
   const FloorPageView view = page.view();
   for (std::size_t i = 0; i < view.tiles(); ++i) {
-    const HilbertCell cell = hilbert_cell(page.first_ + view.key(i));
+    const HilbertCell cell = hilbert_cell(page.first + view.key(i));
     if (cell.x >= facts_.shape.columns() || cell.y >= facts_.shape.rows()) {
       damaged("a page of heights has a tile beside the raster");
     }
@@ -185,12 +190,11 @@ bool Floor::visit_tiles(const Page& page, const Visit& visit) const {
 }
 
 bool Floor::visit(const std::function<bool(const Bounds&)>& wants, const TakeTile& take,
-                  IoCounters& counters) const {
+                  Recent& recent, IoCounters& counters) const {
   const auto bound = [&](const Bounds& b) { return wants(b) ? kBestMerit : kNoMerit; };
-  Page page;
   FloorTile tile;
-  for (const Found& found : find_pages(bound, kNoMerit, counters)) {
-    read_page(found, page, counters);
+  for (const Found& found : find_pages(bound, kNoMerit, recent, counters)) {
+    const Recent::Page& page = read_page(found, recent, counters);
     const bool goes_on = visit_tiles(page, [&](std::size_t i, const TileAt& at) {
       if (!wants(at.bounds)) return true;
       decode(page, i, at.column, at.row, tile);
@@ -201,7 +205,8 @@ bool Floor::visit(const std::function<bool(const Bounds&)>& wants, const TakeTil
   return true;
 }
 
-void Floor::visit_best_first(BestVisitor& visitor, Merit cut_off, IoCounters& counters) const {
+void Floor::visit_best_first(BestVisitor& visitor, Merit cut_off, Recent& recent,
+                             IoCounters& counters) const {
   const auto bound = [&](const Bounds& b) { return visitor.bound(b); };
   const auto is_worse = [](const Found& a,
                            const Found& b) {  // among equal ones the first of the file
@@ -209,20 +214,19 @@ void Floor::visit_best_first(BestVisitor& visitor, Merit cut_off, IoCounters& co
   };
   std::vector<Found> first{root()}, below;
   first.front().merit = kBestMerit;
-  if (visitor.wants_all()) first = find_pages(bound, cut_off, counters);
+  if (visitor.wants_all()) first = find_pages(bound, cut_off, recent, counters);
   std::priority_queue queue(is_worse, std::move(first));
-  Page page;
   FloorTile tile;
   for (; !queue.empty() && is_wanted(queue.top().merit, cut_off);) {
     const Found found = queue.top();
     queue.pop();
     if (found.level < tree_.levels()) {
       below.clear();
-      expand(found, bound, cut_off, below, counters);
+      expand(found, bound, cut_off, below, recent, counters);
       for (const Found& f : below) queue.push(f);
       continue;
     }
-    read_page(found, page, counters);
+    const Recent::Page& page = read_page(found, recent, counters);
     visit_tiles(page, [&](std::size_t i, const TileAt& at) {
       if (is_wanted(visitor.bound(at.bounds), cut_off)) {
         decode(page, i, at.column, at.row, tile);

@@ -108,24 +108,24 @@ void use(const Floor& floor) {
   const FloorShape& shape = floor.facts().shape;
   std::map<std::pair<std::uint32_t, std::uint32_t>, FloorTile> seen;
   IoCounters counters;
+  Floor::Recent recent;
   try {
     floor.visit([](const Floor::Bounds&) { return true; },
                 [&](const Floor::TileAt& at, const FloorTile& tile) {
                   require(seen.emplace(std::pair(at.column, at.row), tile).second);
                   return seen.size() < 500;
                 },
-                counters);
+                recent, counters);
   } catch (const Error&) {
   }
-  Floor::Page page;
   FloorTile tile;
   std::size_t packed = 0;
   for (const auto& [place, first] : seen) {
-    floor.read(place.first, place.second, page, tile, counters);
+    floor.read(place.first, place.second, recent, tile, counters);
     require(are_same(first, tile));
     if (packed++ < 20) pack_again(tile);
   }
-  floor.read(shape.columns() - 1, shape.rows() - 1, page, tile, counters);
+  floor.read(shape.columns() - 1, shape.rows() - 1, recent, tile, counters);
 }
 
 void verify(const ReadOnlyFile& file, const FloorPlace& place, const StoreFacts& facts) {

@@ -43,8 +43,9 @@ void use_floor(const StoreFile& store) {
     return;
   }
   IoCounters counters;
+  Floor::Recent recent;
   floor->visit([](const Floor::Bounds&) { return true; },
-               [](const Floor::TileAt&, const FloorTile&) { return true; }, counters);
+               [](const Floor::TileAt&, const FloorTile&) { return true; }, recent, counters);
 }
 
 void use(const std::string& path, PageAccess access) {

@@ -93,11 +93,11 @@ class FloorStore : public ::testing::Test {
 void expect_all_tiles(const StoreFile& store, const Raster& raster) {
   const Floor& floor = *store.floor();
   const FloorShape& shape = floor.facts().shape;
-  Floor::Page page;
+  Floor::Recent recent;
   FloorTile tile;
   IoCounters counters;
   for (const auto& [column, row] : in_order(shape)) {
-    floor.read(column, row, page, tile, counters);
+    floor.read(column, row, recent, tile, counters);
     const FloorTile expected = tile_of(raster, shape, column, row);
     ASSERT_EQ(tile.samples(), expected.samples());
     for (std::size_t i = 0; i < tile.samples(); ++i) {
@@ -180,19 +180,20 @@ TEST_F(FloorStore, AVisitTakesTheTilesOfAWindowAndOfNoOtherPages) {
       }
       std::set<std::uint64_t> pages;
       for (const Place& at : expected) {
-        Floor::Page page;
+        Floor::Recent recent;
         FloorTile tile;
         IoCounters counters;
-        floor.read(at.first, at.second, page, tile, counters);
-        pages.insert(page.number());
+        floor.read(at.first, at.second, recent, tile, counters);
+        pages.insert(recent.page());
       }
       IoCounters counters;
+      Floor::Recent recent;
       floor.visit([&](const Floor::Bounds& b) { return meets(b.box, box); },
                   [&](const Floor::TileAt& at, const FloorTile&) {
                     EXPECT_TRUE(seen.emplace(at.column, at.row).second) << "a tile came twice";
                     return true;
                   },
-                  counters);
+                  recent, counters);
       ASSERT_EQ(seen, expected);
       ASSERT_EQ(counters.pages, pages.size());
     }
@@ -203,6 +204,7 @@ TEST_F(FloorStore, BoundsHoldWhatLiesWithin) {
   const Raster raster{700, 900};
   const auto store = StoreFile::open(written(raster, 4));
   IoCounters counters;
+  Floor::Recent recent;
   store->floor()->visit(
       [&](const Floor::Bounds& b) {
         const Truth truth = truth_of(raster, b.box);
@@ -211,7 +213,7 @@ TEST_F(FloorStore, BoundsHoldWhatLiesWithin) {
                     (b.codes.lo <= truth.lowest && truth.highest <= b.codes.hi));
         return true;
       },
-      [](const Floor::TileAt&, const FloorTile&) { return true; }, counters);
+      [](const Floor::TileAt&, const FloorTile&) { return true; }, recent, counters);
 }
 
 /// Looks for the highest sample of a window.
@@ -253,7 +255,8 @@ TEST_F(FloorStore, ABestFirstSearchFindsTheHighestSampleInFewPages) {
     const GridBox box = random_box(random, raster.width, raster.height);
     HighestSample search(raster, box, turn % 2 == 0);
     IoCounters counters;
-    store->floor()->visit_best_first(search, {-kInfinity}, counters);
+    Floor::Recent recent;
+    store->floor()->visit_best_first(search, {-kInfinity}, recent, counters);
     const Truth truth = truth_of(raster, box);
     ASSERT_EQ(search.found.has_height, truth.has_height);
     if (truth.has_height) {
@@ -263,15 +266,15 @@ TEST_F(FloorStore, ABestFirstSearchFindsTheHighestSampleInFewPages) {
   }
 }
 
-TEST_F(FloorStore, ATileIsOnePageAndANode) {
+TEST_F(FloorStore, ATileIsOnePage) {
   const auto store = StoreFile::open(written({700, 900}));
-  Floor::Page page;
+  Floor::Recent recent;
   FloorTile tile;
   IoCounters counters;
-  store->floor()->read(3, 4, page, tile, counters);
+  store->floor()->read(3, 4, recent, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
-  EXPECT_EQ(counters.index_nodes, 1U) << "the root counts, as that of the index does";
-  store->floor()->read(3, 4, page, tile, counters);
+  EXPECT_EQ(counters.index_nodes, 0U) << "the root is in memory";
+  store->floor()->read(3, 4, recent, tile, counters);
   EXPECT_EQ(counters.pages, 1U);
 }
 
@@ -297,12 +300,12 @@ TEST_F(FloorStore, EveryDamagedByteIsFound) {
     const auto store = StoreFile::open(path);
     EXPECT_THROW(
         {
-          Floor::Page page;
+          Floor::Recent recent;
           FloorTile tile;
           IoCounters counters;
           const FloorShape shape = store->floor()->facts().shape;
           for (const auto& [column, row] : in_order(shape)) {
-            store->floor()->read(column, row, page, tile, counters);
+            store->floor()->read(column, row, recent, tile, counters);
           }
         },
         Error)

@@ -424,9 +424,9 @@ TEST_F(FloorVerify, AReaderHandsOutNoHeightThatIsNoNumber) {
     }
     write_file(path_, with_floor(sound_, sections_of(floor)));
     const auto store = StoreFile::open(path_);
-    Floor::Page page;
+    Floor::Recent recent;
     IoCounters counters;
-    EXPECT_THROW(store->floor()->read(0, 0, page, tile, counters), Error);
+    EXPECT_THROW(store->floor()->read(0, 0, recent, tile, counters), Error);
   }
 }
 

@@ -93,10 +93,10 @@ TEST(Format, ReadsTheGoldenFileWithHeights) {
   EXPECT_EQ(floor.facts().source, SourceNumber::kInt16);
   EXPECT_EQ(floor.facts().nodata, -9999.0);
   EXPECT_TRUE(floor.facts().is_exact);
-  Floor::Page page;
+  Floor::Recent recent;
   FloorTile tile;
   IoCounters counters;
-  floor.read(0, 0, page, tile, counters);
+  floor.read(0, 0, recent, tile, counters);
   EXPECT_EQ(tile.is_void, (std::vector<std::uint8_t>{0, 0, 0, 1}));
   EXPECT_EQ(floor.numbers().bits(tile.heights[2]), 6U);
   const Bytes file = read_file(golden_with_floor());

@@ -30,12 +30,13 @@ inline StoredFloor floor_of(const StoreFile& store) {
   const Floor& floor = *store.floor();
   result.facts = floor.facts();
   IoCounters counters;
+  Floor::Recent recent;
   floor.visit([](const Floor::Bounds&) { return true; },
               [&](const Floor::TileAt& at, const FloorTile& tile) {
                 result.tiles.emplace(FloorShape::key(at.column, at.row), tile);
                 return true;
               },
-              counters);
+              recent, counters);
   return result;
 }
 

@@ -189,7 +189,7 @@ class SourceWriter {
           take<T>(at, samples, values);
           return true;
         },
-        counters_);
+        recent_, counters_);
     file_.write_block(column, row, values.data());
   }
 
@@ -227,6 +227,7 @@ class SourceWriter {
   bool rows_from_south_ = false, columns_from_east_ = false;
   Range columns_{}, rows_{};
   std::vector<std::byte> bytes_;  ///< Of the values of a block.
+  Floor::Recent recent_;
   IoCounters counters_;
 };
 

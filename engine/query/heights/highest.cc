@@ -97,7 +97,9 @@ class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
 
   void search() {
     if (const Floor* const floor = floor_for(terrain_, detail_)) {
-      visit_floor_best_first(*floor, facts_.heights, filter_.box, *this, cut_off(), context_.cost);
+      Floor::Recent recent;
+      visit_floor_best_first(*floor, facts_.heights, filter_.box, *this, cut_off(), recent,
+                             context_.cost);
       return;
     }
     const auto look = [&](const LivingTriangle& t) { look_at(t); };

@@ -57,7 +57,8 @@ constexpr std::size_t kAhead = 16;
 
 /// Points of the full TIN of a raster, which come tile by tile.
 void locate_on_floor(const Floor& floor, const StoreFacts& facts, const PointGroup& group) {
-  FloorAtSpots triangles(floor, facts.heights);
+  Floor::Recent recent;
+  FloorAtSpots triangles(floor, facts.heights, recent);
   if (floor.is_far()) {
     std::vector<Spot> spots;
     for (const PointOnCurve& p : group.points) spots.push_back(p.spot);

@@ -187,7 +187,8 @@ class SquareOfTile {
 
 bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
                  const std::function<bool(std::size_t)>& begin,
-                 const std::function<void(const LivingTriangle&)>& take, QueryCost& cost) {
+                 const std::function<void(const LivingTriangle&)>& take, Floor::Recent& recent,
+                 QueryCost& cost) {
   const CellsOfTile cells(floor, heights);
   SquareOfTile square(floor, heights);
   return floor.visit(
@@ -206,7 +207,7 @@ bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorW
         });
         return true;
       },
-      cost.io);
+      recent, cost.io);
 }
 
 namespace {
@@ -240,9 +241,10 @@ class BestTiles final : public Floor::BestVisitor {
 }  // namespace
 
 void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
-                            BestCellVisitor& visitor, Merit cut_off, QueryCost& cost) {
+                            BestCellVisitor& visitor, Merit cut_off, Floor::Recent& recent,
+                            QueryCost& cost) {
   BestTiles tiles(floor, heights, box, visitor, cost);
-  floor.visit_best_first(tiles, cut_off, cost.io);
+  floor.visit_best_first(tiles, cut_off, recent, cost.io);
 }
 
 LivingTriangle FloorTriangle::living(const HeightEncoding& heights) const noexcept {
@@ -272,7 +274,7 @@ const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint3
   Kept& kept = kept_[column % kKeptSide + kKeptSide * (row % kKeptSide)];
   if (kept.column != column || kept.row != row) {
     kept.column = UINT32_MAX;  // until it is read
-    floor_.read(column, row, page_, kept.tile, cost.io);
+    floor_.read(column, row, recent_, kept.tile, cost.io);
     cost.samples_read += kept.tile.samples();
     kept.column = column;
     kept.row = row;
@@ -289,7 +291,7 @@ std::uint64_t FloorAtSpots::along(const FloorShape& shape, Spot spot) noexcept {
   return FloorShape::key(tile(spot.x, shape.width), tile(spot.y, shape.height));
 }
 
-void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) const {
+void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) {
   if (!floor_.is_far()) return;
   std::vector<std::uint64_t> keys;
   for (const Spot spot : spots) {
@@ -302,7 +304,7 @@ void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) c
     }
   }
   std::sort(keys.begin(), keys.end());
-  floor_.announce(keys, counters);
+  floor_.announce(keys, recent_, counters);
 }
 
 std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, QueryCost& cost) {

@@ -49,7 +49,8 @@ struct FloorWish {
 /// Cost: the tiles of the box, 1 ns a sample and 20 ns a cell.
 bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
                  const std::function<bool(std::size_t)>& begin,
-                 const std::function<void(const LivingTriangle&)>& take, QueryCost& cost);
+                 const std::function<void(const LivingTriangle&)>& take, Floor::Recent& recent,
+                 QueryCost& cost);
 
 /// The caller's part of a best-first search.
 class BestCellVisitor {
@@ -75,7 +76,8 @@ class BestCellVisitor {
 /// Visits the triangles of the tiles of pages by falling merit; those whose box meets `box`.
 /// @throws Error corruption, io_error; what the visitor throws
 void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
-                            BestCellVisitor& visitor, Merit cut_off, QueryCost& cost);
+                            BestCellVisitor& visitor, Merit cut_off, Floor::Recent& recent,
+                            QueryCost& cost);
 
 /// The triangle of the full TIN that holds a spot within, and the place of the spot in it.
 struct FloorTriangle {
@@ -92,9 +94,9 @@ struct FloorTriangle {
 /// along the curve of the tiles. Threads: one owner.
 class FloorAtSpots {
  public:
-  /// @param floor  Borrowed.
-  FloorAtSpots(const Floor& floor, const HeightEncoding& heights)
-      : floor_(floor), numbers_(floor.numbers()), heights_(heights) {}
+  /// @param floor, recent  Borrowed.
+  FloorAtSpots(const Floor& floor, const HeightEncoding& heights, Floor::Recent& recent)
+      : floor_(floor), numbers_(floor.numbers()), heights_(heights), recent_(recent) {}
 
   /// The place of a spot's tile along the curve. Spots in this order read and decode each tile once,
   /// but for those of neighbours that spots on sides of tiles ask for.
@@ -104,7 +106,7 @@ class FloorAtSpots {
   /// nodes and one for the pages. Else nothing.
   /// @throws Error corruption, io_error
   /// Cost: 8 bytes a spot, sorted.
-  void announce(std::span<const Spot> spots, IoCounters& counters) const;
+  void announce(std::span<const Spot> spots, IoCounters& counters);
 
   /// The triangle around a spot that lies on no side of a triangle; none: it lies on one, or beside the
   /// raster.
@@ -130,7 +132,7 @@ class FloorAtSpots {
   const Floor& floor_;
   FloorNumbers numbers_;
   HeightEncoding heights_;
-  Floor::Page page_;
+  Floor::Recent& recent_;
   std::array<Kept, kKeptSide * kKeptSide> kept_;
 };
 

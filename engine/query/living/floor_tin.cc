@@ -72,6 +72,7 @@ Tin floor_tin(const Floor& floor, const HeightEncoding& heights, const GridBox& 
                        static_cast<std::int32_t>(window.x0 + window.width - 1),
                        static_cast<std::int32_t>(window.y0 + window.height - 1)};
   SamplesOfWindow samples(floor, window);
+  Floor::Recent recent;
   floor.visit([&](const Floor::Bounds& b) { return meets(b.box, wanted); },
               [&](const Floor::TileAt& at, const FloorTile& tile) {
                 context.check_stop();
@@ -79,7 +80,7 @@ Tin floor_tin(const Floor& floor, const HeightEncoding& heights, const GridBox& 
                 samples.take(at, tile);
                 return true;
               },
-              context.cost.io);
+              recent, context.cost.io);
   return make_raster_tin(samples.heights, samples.valid, window, heights);
 }
 

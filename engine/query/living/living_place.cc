@@ -102,7 +102,7 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
 
 /// The full TIN of a raster follows from its heights, of which far fewer pages are read.
 bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, QueryContext& context,
-                              LivingVisitor& visitor) const {
+                              LivingVisitor& visitor) {
   const PlaceStars across_steps(place, heights_);
   const StarPredicate* const also = place.steps.empty() ? place.stars : &across_steps;
   FloorWish wish;
@@ -128,7 +128,7 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
           visitor.take(t);
         }
       },
-      context.cost);
+      recent_, context.cost);
 }
 
 /// Whether the directory is asked instead of the index: it is read in one round, and knows of boxes

@@ -12,6 +12,7 @@
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
+#include "storage/floor.h"
 
 namespace ptin {
 
@@ -52,7 +53,7 @@ class LivingReader {
 
  private:
   bool read_floor(const Floor& floor, const LivingPlace& place, QueryContext& context,
-                  LivingVisitor& visitor) const;
+                  LivingVisitor& visitor);
   [[nodiscard]] bool asks_directory() const;
   template <class Page>
   bool take_all(std::span<const Page> pages, std::uint64_t records, const LivingPlace& place,
@@ -66,6 +67,7 @@ class LivingReader {
   const StoreFile& store_;
   HeightEncoding heights_;
   LivingFilter filter_;
+  Floor::Recent recent_;
   LevelStars stars_;
 };
 

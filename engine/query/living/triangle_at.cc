@@ -300,8 +300,8 @@ void Finder::find_together(std::span<const Spot> spots, std::span<TriangleAt> fo
 
 /// The triangles at spots of the full TIN of a raster.
 void find_on_floor(const StoreFile& store, const Floor& floor, std::span<const Spot> spots,
-                   std::span<TriangleAt> found, QueryContext& context) {
-  FloorAtSpots triangles(floor, store.facts().heights);
+                   std::span<TriangleAt> found, Floor::Recent& recent, QueryContext& context) {
+  FloorAtSpots triangles(floor, store.facts().heights, recent);
   triangles.announce(spots, context.cost.io);
   for (std::size_t i = 0; i < spots.size(); ++i) {
     if (i % kStopInterval == 0) {
@@ -325,10 +325,13 @@ TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, QueryCost& cost
 }
 
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
-                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
+                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context,
+                    Floor::Recent* recent) {
   std::fill(found.begin(), found.end(), TriangleAt{});
   if (const Floor* const floor = floor_for(terrain, detail)) {
-    find_on_floor(terrain.store(), *floor, spots, found, context);
+    Floor::Recent own;
+    find_on_floor(terrain.store(), *floor, spots, found, recent != nullptr ? *recent : own,
+                  context);
   } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);
   }

@@ -13,6 +13,7 @@
 #include "engine/query/select/detail.h"
 #include "engine/query/select/opened_terrain.h"
 #include "engine/query/walk/walk.h"
+#include "storage/floor.h"
 
 namespace ptin {
 
@@ -44,6 +45,7 @@ struct TriangleAt {
 /// of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
 /// a triangle holds it within; of many spots in a small region the pages of the region.
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
-                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context);
+                    std::span<TriangleAt> found, std::uint64_t held, QueryContext& context,
+                    Floor::Recent* recent = nullptr);
 
 }  // namespace ptin

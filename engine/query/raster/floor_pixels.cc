@@ -180,6 +180,7 @@ void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCe
   const LineTiles columns(shape, pixels.columns(), shape.columns());
   const LineTiles rows(shape, pixels.rows(), shape.rows());
   std::size_t tiles = 0;
+  Floor::Recent recent;
   floor.visit(
       [&](const Floor::Bounds& b) {
         return columns.has(b.box.min_x, b.box.max_x) && rows.has(b.box.min_y, b.box.max_y);
@@ -189,7 +190,7 @@ void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCe
         pixels.copy(at, tile, columns.of(at.column), rows.of(at.row));
         return true;
       },
-      counters);
+      recent, counters);
 }
 
 }  // namespace ptin

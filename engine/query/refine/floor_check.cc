@@ -68,6 +68,7 @@ std::optional<VerifyFault> FloorCheck::read(IoCounters& counters) {
   state_.assign(all, Sample::kUnread);
   found_.assign(all, 0);
   std::optional<VerifyFault> fault;
+  Floor::Recent recent;
   floor_.visit([&](const Floor::Bounds& b) { return meets(b.box, samples_); },
                [&](const Floor::TileAt& at, const FloorTile& t) {
                  if (put(at, t)) return true;
@@ -77,7 +78,7 @@ std::optional<VerifyFault> FloorCheck::read(IoCounters& counters) {
                           "the heights of the raster"};
                  return false;
                },
-               counters);
+               recent, counters);
   return fault;
 }
 

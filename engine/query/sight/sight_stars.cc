@@ -55,7 +55,7 @@ void SightStars::find_ends() {
     end.known = true;
     if (end.inside) {
       // Ends stand on the full TIN at any level of detail: a coarse one would lift or sink them.
-      find_triangles(terrain_, full_detail_, {&spots[i], 1}, {&at[i], 1}, 0, context_);
+      find_triangles(terrain_, full_detail_, {&spots[i], 1}, {&at[i], 1}, 0, context_, &recent_);
     }
     end.surface = at[i].is_found && !at[i].triangle.is_void;
     if (end.surface) {
@@ -222,7 +222,8 @@ void SightStars::begin_search(Aim aim, Part part, LevelStars& stars) {
 void SightStars::search(Aim aim, Part part, LevelStars& stars) {
   begin_search(aim, part, stars);
   if (const Floor* const floor = floor_for(terrain_, stars.detail())) {
-    visit_floor_best_first(*floor, facts_.heights, box_of(part), *this, {cut_off()}, context_.cost);
+    visit_floor_best_first(*floor, facts_.heights, box_of(part), *this, {cut_off()}, recent_,
+                           context_.cost);
     return;
   }
   stars.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); },

@@ -97,10 +97,11 @@ class SightStars final : public SightSearch, private BestStarVisitor, private Be
   // The search at hand.
   LevelStars* stars_ = &asked_;
   Aim aim_ = Aim::kVerdict;
-  Part part_{0.0, 1.0};  ///< Part of the way; nothing else is looked at.
-  LivingFilter filter_;  ///< What is wanted of the page at hand.
-  double lowest_ = 0.0;  ///< What ends below this height on the page does not matter.
-  bool is_cut_ = false;  ///< The budget ended the search.
+  Part part_{0.0, 1.0};   ///< Part of the way; nothing else is looked at.
+  LivingFilter filter_;   ///< What is wanted of the page at hand.
+  Floor::Recent recent_;  ///< Ends, and parts of the line, share pages.
+  double lowest_ = 0.0;   ///< What ends below this height on the page does not matter.
+  bool is_cut_ = false;   ///< The budget ended the search.
   double cut_bound_ = 0.0;
   // What all searches have found.
   double most_ = kInfinity;           ///< The smallest clearance is no more.
