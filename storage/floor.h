@@ -10,37 +10,57 @@
 #include <span>
 #include <vector>
 
+#include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
+#include "engine/geometry/interval.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/readable_file.h"
 #include "storage/floor_facts.h"
+#include "storage/floor_page.h"
 #include "storage/floor_tile.h"
+#include "storage/merit.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 
 /// Where the sections lie.
 struct FloorPlace {
-  ByteRange nodes, pages;
-  std::uint64_t root_checksum = 0;
+  std::uint64_t root = 0, root_checksum = 0;  ///< Offset of the root.
+  ByteRange nodes, pages;                     ///< Nodes below the root.
+  /// The offset of a node by FloorTree::position().
+  [[nodiscard]] std::uint64_t offset_of_node(std::uint64_t position) const noexcept {
+    return position == 0 ? root : nodes.offset + (position - 1) * layout::kNodeBytes;
+  }
+  [[nodiscard]] std::uint64_t offset_of_page(std::uint64_t number) const noexcept {
+    return pages.offset + number * layout::kFloorPageBytes;
+  }
 };
 
 /// Reads pages of heights, and verifies each before its tiles are seen: an entry of a node holds the
-/// checksum of what it describes, and the section table that of the root. Threads: const functions may
-/// be called at once.
+/// checksum of what it describes, and the section table that of the root. The root stays in memory; as in
+/// the index, a node counts whenever its entries are looked at. Threads: const functions may be called at
+/// once.
 class Floor {
  public:
   /// A page that was read last, for tiles that lie on it, too. A value of its caller's.
   class Page {
+   public:
+    [[nodiscard]] std::uint64_t number() const noexcept { return number_; }
+
    private:
     friend class Floor;
-    std::uint64_t number_ = UINT64_MAX, first_ = 0;
+    [[nodiscard]] FloorPageView view() const noexcept {
+      return FloorPageView(std::span(bytes_).first(layout::kFloorPageBytes));
+    }
+    std::uint64_t number_ = UINT64_MAX, first_ = 0, end_ = 0;  ///< From a key to another.
     std::vector<std::byte> bytes_;
   };
 
   /// Reads the root.
-  /// @param file  Borrowed.
+  /// @param file   Borrowed.
+  /// @param store  What the file says of its terrain.
   /// @throws Error corruption, io_error
-  Floor(const ReadableFile& file, const FloorPlace& place, const HeightEncoding& heights);
+  Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts& store);
 
   [[nodiscard]] const FloorFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
@@ -54,27 +74,48 @@ class Floor {
   /// @throws Error corruption, io_error
   void announce(std::span<const std::uint64_t> keys, IoCounters& counters) const;
 
-  /// Tiles from a column and a row to others, these too.
-  struct Tiles {
-    std::uint32_t first_column, first_row, last_column, last_row;
+  /// What is known of samples before they are read.
+  struct Bounds {
+    GridBox box;     ///< Of their places, grid units.
+    Interval codes;  ///< Of their heights, not nearer; empty: all are void.
   };
-  /// A tile, and what is known of it before its samples are decoded.
-  struct TileBounds {
+  struct TileAt {
     std::uint32_t column, row;
-    OrderedHeight least, greatest;  ///< Of its samples, not nearer; least > greatest: all are void.
+    Bounds bounds;
   };
+  /// Takes a tile that is there for the call.
+  using TakeTile = std::function<bool(const TileAt&, const FloorTile&)>;
 
-  /// Reads some tiles along the curve, so that each page is read once.
-  /// @param wants  Whether a tile is to be read. Of a whole page it is asked by the page's heights, for
-  ///               each of its tiles until one is wanted: so it may have no state.
-  /// @param take   Takes each tile that is wanted. The tile is there for the call. False ends it.
+  /// Reads tiles along the curve, so that each page is read once.
+  /// @param wants  Whether samples within these bounds are wanted: true for wider bounds where it is for
+  ///               some within them.
+  /// @param take   Takes each tile that is wanted; false ends it.
   /// @return False when `take` ended it.
-  /// REQUIRES: the tiles are those of the shape.
   /// @throws Error corruption, io_error; what the functions throw
-  /// Cost: the nodes and pages of these tiles, announced together; 16 bytes a tile.
-  bool visit(const Tiles& tiles, const std::function<bool(const TileBounds&)>& wants,
-             const std::function<bool(const TileBounds&, const FloorTile&)>& take,
+  /// Cost: the nodes and pages that hold such tiles, of a far file a round for each level of nodes and one
+  /// for the pages.
+  bool visit(const std::function<bool(const Bounds&)>& wants, const TakeTile& take,
              IoCounters& counters) const;
+
+  /// The caller's part of a best-first search.
+  class BestVisitor {
+   public:
+    BestVisitor() = default;
+    BestVisitor(const BestVisitor&) = delete;
+    BestVisitor& operator=(const BestVisitor&) = delete;
+    virtual ~BestVisitor() = default;
+    /// An upper bound of the merit of all within these bounds: wider ones have no smaller merit.
+    /// A value of -infinity: nothing there is wanted.
+    [[nodiscard]] virtual Merit bound(const Bounds& bounds) const = 0;
+    /// Whether all that is wanted will probably be visited: of a far file it is announced together.
+    [[nodiscard]] virtual bool wants_all() const { return false; }
+    /// Takes a tile. Returns the cut-off: what is below it is not read.
+    /// @param left  No merit of what was not visited yet is above it.
+    virtual Merit visit(const TileAt& at, const FloorTile& tile, Merit left) = 0;
+  };
+  /// Reads tiles by pages of falling merit until the cut-off is above all that is left.
+  /// @throws Error corruption, io_error; what the visitor throws
+  void visit_best_first(BestVisitor& visitor, Merit cut_off, IoCounters& counters) const;
 
   /// Reads a tile.
   /// @param page  That of an earlier call is not read again where it holds this tile.
@@ -86,39 +127,51 @@ class Floor {
 
  private:
   static constexpr std::size_t kSlots = 256;
-  /// A node that was verified. The lock is held while it is copied.
+  /// A node that was verified. The lock is held while it is copied, never while it is read.
   struct Slot {
     std::mutex lock;
     std::uint64_t position = UINT64_MAX;
-    layout::FloorNode node;
+    std::unique_ptr<layout::FloorNode> node;
   };
 
-  [[nodiscard]] layout::FloorNode node(std::size_t level, std::uint64_t number,
-                                       std::uint64_t checksum, IoCounters& counters) const;
-  /// A page as the node above it describes it.
+  /// A node or a page as the node above it describes it.
   struct Found {
-    std::uint64_t number;
-    std::uint64_t end;  ///< Key of the first tile of the next page.
+    std::uint64_t number;  ///< On its level.
+    std::uint64_t end;     ///< Key of the first tile of the next one.
     layout::FloorEntry entry;
+    std::size_t level;  ///< That of pages is tree_.levels().
+    Merit merit = kNoMerit;
   };
-  /// The page that holds a key; the node above it, `depth` levels below the root, where that is less deep.
-  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, IoCounters& counters) const;
-  void announce_at(std::size_t depth, std::span<const std::uint64_t> keys,
-                   IoCounters& counters) const;
+  [[nodiscard]] layout::FloorNode read_node(const Found& found) const;
+  [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
+  using Bound = std::function<Merit(const Bounds&)>;
+  [[nodiscard]] Found root() const noexcept;
+  /// What holds a key on a level: a node, or a page.
+  [[nodiscard]] Found find(std::uint64_t key, std::size_t level, IoCounters& counters) const;
+  /// What of a node's entries is not below the cut-off, along the curve.
+  void expand(const Found& node, const Bound& bound, Merit cut_off, std::vector<Found>& below,
+              IoCounters& counters) const;
+  /// The pages that are not below the cut-off, along the curve.
+  [[nodiscard]] std::vector<Found> find_pages(const Bound& bound, Merit cut_off,
+                                              IoCounters& counters) const;
+  void announce(const std::vector<Found>& found, IoCounters& counters) const;
+  [[nodiscard]] Bounds bounds_of(const TileRange& tiles, OrderedHeight least,
+                                 OrderedHeight greatest) const;
   void read_page(const Found& found, Page& page, IoCounters& counters) const;
-  [[nodiscard]] std::vector<std::uint64_t> keys_of(const Tiles& tiles) const;
-  /// The pages that hold wanted tiles, ascending, and announced.
-  [[nodiscard]] std::vector<Found> pages_of(const std::vector<std::uint64_t>& keys,
-                                            const std::function<bool(const TileBounds&)>& wants,
-                                            IoCounters& counters) const;
+  /// Visits the tiles of a page; false when `visit` ended it.
+  template <class Visit>
+  bool visit_tiles(const Page& page, const Visit& visit) const;
   void decode(const Page& page, std::size_t i, std::uint32_t column, std::uint32_t row,
               FloorTile& tile) const;
+  [[nodiscard]] bool has_heights(const FloorTile& tile) const;
   [[noreturn]] void damaged(const char* what) const;
 
   const ReadableFile& file_;
   FloorPlace place_;
   FloorFacts facts_;
   FloorTree tree_{1};
+  layout::FloorNode root_{};
+  HeightEncoding heights_;
   FloorNumbers numbers_;
   mutable std::vector<Slot> slots_{kSlots};
 };

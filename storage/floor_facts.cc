@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/floor_facts.h"
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace ptin {
 
@@ -11,6 +13,8 @@ constexpr std::uint8_t kGradient = 1;  ///< The coding of tiles (floor_tile.h).
 constexpr std::uint16_t kIsExact = 1, kHasNodata = 2;
 constexpr std::uint32_t kLeastSideLog2 = 4, kMostSideLog2 = 6;
 static_assert((1U << kMostSideLog2) == kMostFloorSide);
+/// With which the height of every number is finite.
+constexpr double kMostStep = static_cast<double>(std::numeric_limits<float>::max()) / 0x1p31;
 
 }  // namespace
 
@@ -27,27 +31,43 @@ void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& 
   root.source_type = static_cast<std::uint32_t>(facts.source);
 }
 
-const char* take_facts(const layout::FloorNode& root, FloorFacts& facts,
+const char* take_facts(const layout::FloorNode& root, const StoreFacts& store, FloorFacts& facts,
                        std::uint64_t& pages) noexcept {
-  facts.shape = {root.side_log2, root.width, root.height};
-  if (root.coding != kGradient)
+  if (root.coding != kGradient) {
     return "the heights are coded in a way that this program does not know";
-  if (root.side_log2 < kLeastSideLog2 || root.side_log2 > kMostSideLog2 || root.width == 0 ||
-      root.height == 0) {
+  }
+  if (root.side_log2 < kLeastSideLog2 || root.side_log2 > kMostSideLog2) {
     return "the heights have tiles that no program makes";
   }
+  if (store.bounds.min_x != 0 || store.bounds.min_y != 0 ||
+      root.width != static_cast<std::uint32_t>(store.bounds.max_x) + 1 ||
+      root.height != static_cast<std::uint32_t>(store.bounds.max_y) + 1) {
+    return "the heights are of another raster: its samples are not the positions of the bounds";
+  }
+  facts.shape = {root.side_log2, root.width, root.height};
   facts.step = layout::to_double(root.step);
-  if (!(facts.step >= 0.0) || !std::isfinite(facts.step)) return "the heights have a step below 0";
+  if (!(facts.step >= 0.0 && facts.step <= kMostStep) || std::signbit(facts.step) ||
+      (facts.step != 0.0 && store.heights.type != HeightType::float32)) {
+    return "the heights have a step that no program writes";
+  }
   if (root.source_type > static_cast<std::uint32_t>(SourceNumber::kFloat64)) {
     return "the heights are of a type that this program does not know";
   }
   facts.source = static_cast<SourceNumber>(root.source_type);
   facts.is_exact = (root.flags & kIsExact) != 0;
-  facts.nodata.reset();
-  if ((root.flags & kHasNodata) != 0) facts.nodata = layout::to_double(root.nodata);
+  const bool has_nodata = (root.flags & kHasNodata) != 0;
+  const double nodata = layout::to_double(root.nodata);
+  if ((root.flags & ~(kIsExact | kHasNodata)) != 0 || (!has_nodata && root.nodata != 0) ||
+      std::isnan(nodata) || std::ranges::any_of(root.reserved, [](auto b) { return b != 0; })) {
+    return "the root above the heights has flags or bytes that no program writes";
+  }
+  facts.nodata = has_nodata ? std::optional(nodata) : std::nullopt;
   pages = root.pages;
   // A page has a tile at least.
-  if (pages == 0 || pages > facts.shape.tiles()) return "the heights have too many pages, or none";
+  if (pages > facts.shape.tiles() ||
+      pages < (facts.shape.tiles() + layout::kMostFloorTiles - 1) / layout::kMostFloorTiles) {
+    return "the heights have more pages than tiles, or fewer than hold these";
+  }
   return nullptr;
 }
 

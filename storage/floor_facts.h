@@ -6,12 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "engine/geometry/height.h"
 #include "storage/floor_shape.h"
 #include "storage/floor_tile.h"
 #include "storage/page_columns.h"
+#include "storage/store_facts.h"
 
 namespace ptin {
 
@@ -57,6 +59,21 @@ class FloorNumbers {
     const double k = std::nearbyint(std::bit_cast<float>(bits) / step_);
     return std::bit_cast<std::uint32_t>(static_cast<std::int32_t>(k)) ^ kSign;
   }
+  /// The least and the greatest number whose height is one.
+  [[nodiscard]] OrderedHeights all() const noexcept {
+    if (step_ != 0 || type_ == HeightType::int32) return {0, UINT32_MAX};
+    return {ordered_height(std::bit_cast<HeightBits>(-std::numeric_limits<float>::max()), type_),
+            ordered_height(std::bit_cast<HeightBits>(std::numeric_limits<float>::max()), type_)};
+  }
+  /// Whether it is the number that ordered() gives of its height: of those with one height one is
+  /// written. REQUIRES: within all().
+  [[nodiscard]] bool is_written(OrderedHeight number) const noexcept {
+    if (step_ != 0) {
+      const double k = std::nearbyint(std::bit_cast<float>(bits(number)) / step_);
+      return k == std::bit_cast<std::int32_t>(number ^ kSign);
+    }
+    return ordered_height(height_of_ordered(number, type_), type_) == number;
+  }
 
  private:
   static constexpr std::uint32_t kSign = 0x80000000U;
@@ -66,8 +83,10 @@ class FloorNumbers {
 
 /// Puts facts into the root above the pages.
 void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& root) noexcept;
-/// @return What is wrong with the root, as a sentence; null where nothing is.
-[[nodiscard]] const char* take_facts(const layout::FloorNode& root, FloorFacts& facts,
-                                     std::uint64_t& pages) noexcept;
+/// @param store  What the file says of its terrain.
+/// @return What is wrong with the root, as a sentence; null where nothing is. Then numbers of any tiles
+///         of so many pages lie within their types, and 453 tiles have a page at least.
+[[nodiscard]] const char* take_facts(const layout::FloorNode& root, const StoreFacts& store,
+                                     FloorFacts& facts, std::uint64_t& pages) noexcept;
 
 }  // namespace ptin

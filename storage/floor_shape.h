@@ -7,10 +7,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/geometry/box.h"
 #include "engine/geometry/hilbert.h"
 #include "storage/layout.h"
 
 namespace ptin {
+
+/// Tiles from a column and a row to others, these too.
+struct TileRange {
+  std::uint32_t first_column, first_row, last_column, last_row;
+};
 
 /// Tiles of a raster: 2^side_log2 cells along each side, fewer at its end.
 struct FloorShape {
@@ -31,6 +37,16 @@ struct FloorShape {
   /// Samples of a column of tiles; of a row with `height`.
   [[nodiscard]] std::uint32_t samples_of(std::uint32_t tile, std::uint32_t all) const noexcept {
     return std::min((1U << side_log2) + 1, all - first_of(tile));
+  }
+
+  /// The places of the samples of some tiles, grid units.
+  [[nodiscard]] GridBox samples_of(const TileRange& tiles) const noexcept {
+    const auto last = [this](std::uint32_t tile, std::uint32_t all) {
+      return static_cast<std::int32_t>(first_of(tile) + samples_of(tile, all) - 1);
+    };
+    return {static_cast<std::int32_t>(first_of(tiles.first_column)),
+            static_cast<std::int32_t>(first_of(tiles.first_row)), last(tiles.last_column, width),
+            last(tiles.last_row, height)};
   }
 
  private:
@@ -58,6 +74,11 @@ class FloorTree {
   /// The entries of all nodes of a level: nodes of the next one, or pages.
   [[nodiscard]] std::uint64_t entries(std::size_t level) const noexcept {
     return level + 1 < nodes_.size() ? nodes_[level + 1] : pages_;
+  }
+  /// The entries of one node of a level.
+  [[nodiscard]] std::uint32_t children(std::size_t level, std::uint64_t number) const noexcept {
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(
+        layout::kFloorFanOut, entries(level) - number * layout::kFloorFanOut));
   }
   [[nodiscard]] std::uint64_t position(std::size_t level, std::uint64_t number) const noexcept {
     for (std::size_t i = 0; i < level; ++i) number += nodes_[i];

@@ -72,7 +72,7 @@ bool is_all_void(const FloorTile& tile) {
          std::find(tile.is_void.begin(), tile.is_void.end(), 0) == tile.is_void.end();
 }
 bool has_voids(const FloorTile& tile) {
-  return std::find(tile.is_void.begin(), tile.is_void.end(), 1) != tile.is_void.end();
+  return std::ranges::any_of(tile.is_void, [](std::uint8_t v) { return v != 0; });
 }
 
 /// Lengths of runs of samples that are not void and void, in turn; the first may be 0.
@@ -224,10 +224,11 @@ void sum_up(FloorTile& tile) noexcept {
   const std::size_t width = tile.width;
   for (std::size_t row = 0; row < tile.height; ++row) {
     OrderedHeight* const here = tile.heights.data() + row * width;
+    const OrderedHeight* const above = row > 0 ? here - width : nullptr;
     OrderedHeight along = 0;
     for (std::size_t x = 0; x < width; ++x) {
       along += here[x];
-      here[x] = along + (row > 0 ? here[x - width] : 0);
+      here[x] = along + (above != nullptr ? above[x] : 0);
     }
   }
 }

@@ -11,8 +11,6 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kMostKeys = 65536;  ///< Of a page: its tiles tell keys in 16 bits.
-
 /// A height within the span of a page, in 65535ths: not above it, or not below it.
 std::uint16_t rounded_down(OrderedHeight height, OrderedHeight least, std::uint32_t span) noexcept {
   if (span == 0) return 0;
@@ -30,13 +28,8 @@ void put(std::vector<std::byte>& page, std::size_t at, const T& structure) {
 
 }  // namespace
 
-void FloorWriter::Bounds::join(const Bounds& b) noexcept {
-  least = std::min(least, b.least);
-  greatest = std::max(greatest, b.greatest);
-}
-
-FloorWriter::Bounds FloorWriter::bounds_of(const FloorTile& tile) {
-  Bounds bounds;
+FloorBounds bounds_of(const FloorTile& tile) noexcept {
+  FloorBounds bounds;
   for (std::size_t i = 0; i < tile.samples(); ++i) {
     if (tile.is_void.empty() || tile.is_void[i] == 0) {
       bounds.join({tile.heights[i], tile.heights[i]});
@@ -45,7 +38,7 @@ FloorWriter::Bounds FloorWriter::bounds_of(const FloorTile& tile) {
   return bounds;
 }
 
-bool FloorWriter::add(std::uint64_t key, const FloorTile& tile) {
+bool FloorPacker::add(std::uint64_t key, const FloorTile& tile) {
   PTIN_CHECK(waiting_.empty() || key > waiting_.back().key);
   const std::size_t before = bytes_.size();
   append_floor_tile(tile, bytes_);
@@ -58,7 +51,7 @@ bool FloorWriter::add(std::uint64_t key, const FloorTile& tile) {
     return false;
   }
   const bool fits = size_with(waiting_.size() + 1, bytes_.size()) <= layout::kFloorPageBytes &&
-                    (waiting_.empty() || key - waiting_.front().key < kMostKeys);
+                    (waiting_.empty() || key - waiting_.front().key < layout::kMostFloorKeys);
   if (!fits) {
     const std::vector<std::byte> next(bytes_.begin() + static_cast<std::ptrdiff_t>(before),
                                       bytes_.end());
@@ -70,12 +63,12 @@ bool FloorWriter::add(std::uint64_t key, const FloorTile& tile) {
   return true;
 }
 
-void FloorWriter::finish() {
+void FloorPacker::finish() {
   if (!waiting_.empty()) write_waiting();
 }
 
-void FloorWriter::write_waiting() {
-  Bounds all;
+void FloorPacker::write_waiting() {
+  FloorBounds all;
   for (const Waiting& tile : waiting_) all.join(tile.bounds);
   const std::uint32_t span = all.is_empty() ? 0 : all.greatest - all.least;
   std::vector<std::byte> page(layout::kFloorPageBytes);
@@ -97,8 +90,8 @@ void FloorWriter::write_waiting() {
       layout::FloorPageHead{static_cast<std::uint16_t>(waiting_.size()),
                             static_cast<std::uint16_t>(end), all.is_empty() ? 0 : all.least, span,
                             0});
-  entries_.push_back({waiting_.front().key, all.least, all.greatest, checksum_of(page)});
-  write_page_(page);
+  const layout::FloorEntry entry{waiting_.front().key, all.least, all.greatest, checksum_of(page)};
+  write_page_(page, entry);
   waiting_.clear();
   bytes_.clear();
 }
@@ -114,7 +107,7 @@ std::vector<layout::FloorNode> FloorWriter::nodes(const FloorFacts& facts) const
       const std::size_t first = number * layout::kFloorFanOut;
       node.entries = static_cast<std::uint32_t>(
           std::min<std::size_t>(layout::kFloorFanOut, below.size() - first));
-      Bounds bounds;
+      FloorBounds bounds;
       for (std::uint32_t i = 0; i < node.entries; ++i) {
         node.entry[i] = below[first + i];
         bounds.join({node.entry[i].least, node.entry[i].greatest});

@@ -74,8 +74,9 @@ enum class SectionKind : std::uint32_t {
   kPages = 6,
   kDirectory = 7,       ///< Both or none.
   kDirectoryNodes = 8,  ///< Kept between the index and the pages.
-  kFloorNodes = 9,      ///< Both or none, behind the pages.
-  kFloorPages = 10,
+  kFloorRoot = 9,       ///< All three or none, behind the pages.
+  kFloorNodes = 10,     ///< Those below the root.
+  kFloorPages = 11,
 };
 
 /// One line of the section table, which follows the header.
@@ -166,7 +167,7 @@ inline constexpr std::size_t kFloorPageBytes = 4096;
 /// Describes a page of heights (in a leaf) or a node (above).
 struct FloorEntry {
   std::uint64_t first;            //  0  key of its first tile
-  std::uint32_t least, greatest;  //  8  ordered heights of its samples; least > greatest: all void
+  std::uint32_t least, greatest;  //  8  ordered heights of its samples; all void: UINT32_MAX and 0
   std::uint64_t checksum;         // 16
 };
 static_assert(sizeof(FloorEntry) == 24 && offsetof(FloorEntry, checksum) == 16);
@@ -198,9 +199,15 @@ struct FloorTileEntry {
   std::uint16_t key;  //  0  beyond that of the page's first tile
   std::uint16_t end;  //  2  of its bytes, from the beginning of the page
   std::uint16_t least,
-      greatest;  //  4  in 65535ths of the span, outward; least > greatest: all void
+      greatest;  //  4  in 65535ths of the span, outward; all void: UINT16_MAX and 0
 };
 static_assert(sizeof(FloorTileEntry) == 8);
+
+/// The most tiles that a page may hold: each has an entry, and a byte at least.
+inline constexpr std::size_t kMostFloorTiles =
+    (kFloorPageBytes - sizeof(FloorPageHead)) / (sizeof(FloorTileEntry) + 1);
+/// Keys of the tiles of a page lie within so many.
+inline constexpr std::uint64_t kMostFloorKeys = 65536;
 
 /// What a page begins with: base and width of each column of numbers (storage/page_columns.h).
 struct PageHeader {
@@ -232,8 +239,8 @@ static_assert(kIsPlainBytes<FileHeader> && kIsPlainBytes<SectionEntry> && kIsPla
               kIsPlainBytes<T0Triangle> && kIsPlainBytes<ErrorBinEntry> &&
               kIsPlainBytes<NodeEntry> && kIsPlainBytes<IndexNode> && kIsPlainBytes<PageHeader> &&
               kIsPlainBytes<DirectoryHead> && kIsPlainBytes<DirectoryEntry> &&
-              kIsPlainBytes<FloorNode> && kIsPlainBytes<FloorPageHead> &&
-              kIsPlainBytes<FloorTileEntry>);
+              kIsPlainBytes<FloorEntry> && kIsPlainBytes<FloorNode> &&
+              kIsPlainBytes<FloorPageHead> && kIsPlainBytes<FloorTileEntry>);
 
 /// Bits of the largest float that is an error or a deviation: +infinity. Every NaN and every
 /// negative number, -0 too, has larger bits, so one unsigned comparison finds a valid value.

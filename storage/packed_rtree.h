@@ -8,27 +8,13 @@
 #include <vector>
 
 #include "engine/geometry/height.h"
-#include "engine/geometry/infinity.h"
 #include "storage/index.h"
 #include "storage/index_nodes.h"
+#include "storage/merit.h"
 
 namespace ptin {
 
 class DescribedPageStore;
-
-/// How good a star is in a best-first search: by its value, larger is better, and among equal
-/// values by its place, smaller is better.
-struct Merit {
-  double value;  ///< Not NaN.
-  std::uint64_t place = 0;
-  [[nodiscard]] bool is_below(const Merit& other) const noexcept {
-    return value != other.value ? value < other.value : place > other.place;
-  }
-};
-/// Below the merit of every star, and that of none.
-inline constexpr Merit kNoMerit{-kInfinity, ~std::uint64_t{0}};
-/// Above the merit of every star: as a cut-off it ends a search.
-inline constexpr Merit kBestMerit{kInfinity, 0};
 
 /// A page of stars that a search found.
 struct StarPage {

@@ -11,6 +11,7 @@
 #include "storage/descriptor.h"
 #include "storage/file/mapped_file.h"
 #include "storage/file/ranged_file.h"
+#include "storage/floor.h"
 #include "storage/index_nodes.h"
 #include "storage/packed_rtree.h"
 #include "storage/page_stores.h"
@@ -170,7 +171,7 @@ const Floor* StoreFile::floor() const {
     return nullptr;
   }
   std::call_once(floor_once_, [this] {
-    floor_ = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts.heights);
+    floor_ = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts);
   });
   return floor_.get();
 }

@@ -268,20 +268,25 @@ std::optional<DirectoryPlace> place_of_directory(const StoreFront& front, const 
 
 /// Where the heights of a raster lie. Nothing of them is read at the opening.
 std::optional<FloorPlace> place_of_floor(const StoreFront& front, const std::string& path) {
+  const SectionEntry* const root = find_any(front.sections, SectionKind::kFloorRoot, path);
   const SectionEntry* const nodes = find_any(front.sections, SectionKind::kFloorNodes, path);
   const SectionEntry* const pages = find_any(front.sections, SectionKind::kFloorPages, path);
-  require((nodes == nullptr) == (pages == nullptr), path,
-          "of the heights and the nodes above them one is missing");
-  if (nodes == nullptr) {
+  require((root == nullptr) == (nodes == nullptr) && (root == nullptr) == (pages == nullptr), path,
+          "of the heights of a raster and the nodes above them one section is missing");
+  if (root == nullptr) {
     return std::nullopt;
   }
-  require(nodes->bytes > 0 && nodes->bytes % layout::kNodeBytes == 0, path,
+  require(front.facts.base_error == 0.0, path,
+          "there are the heights of a raster, yet the file left samples out");
+  require(root->bytes == layout::kNodeBytes && nodes->bytes % layout::kNodeBytes == 0, path,
           "the nodes above the heights are no whole number of nodes long");
   require(pages->bytes > 0 && pages->bytes % layout::kFloorPageBytes == 0, path,
           "the heights are no whole number of pages long");
-  require(pages->checksum == 0, path,
-          "the checksum of the section of heights should be 0: each page has its own");
-  return FloorPlace{{nodes->offset, nodes->bytes}, {pages->offset, pages->bytes}, nodes->checksum};
+  require(root->offset % layout::kNodeBytes == 0 && nodes->offset % layout::kNodeBytes == 0 &&
+              pages->offset % layout::kFloorPageBytes == 0,
+          path, "the heights do not begin at a multiple of 4096 bytes");
+  return FloorPlace{
+      root->offset, root->checksum, {nodes->offset, nodes->bytes}, {pages->offset, pages->bytes}};
 }
 
 }  // namespace
@@ -304,6 +309,8 @@ const char* name_of(SectionKind kind) noexcept {
       return "directory";
     case SectionKind::kDirectoryNodes:
       return "directory nodes";
+    case SectionKind::kFloorRoot:
+      return "height root";
     case SectionKind::kFloorNodes:
       return "height nodes";
     case SectionKind::kFloorPages:

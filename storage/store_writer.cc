@@ -138,6 +138,21 @@ ScratchFile kept_file(FileLayer& files, const std::string& path) {
   return ScratchFile(files, path, ScratchFile::kept_at(path));
 }
 
+/// Adds the sections of a raster's heights to the table, from an offset on.
+/// @return Where they end.
+std::uint64_t place_floor(Front& front, std::uint64_t offset,
+                          std::span<const layout::FloorNode> nodes, std::uint64_t page_bytes,
+                          std::uint64_t page_checksum) {
+  const auto below = nodes.subspan(1);
+  offset = front.add_outside(layout::SectionKind::kFloorRoot, offset, sizeof(layout::FloorNode));
+  offset = front.add_outside(layout::SectionKind::kFloorNodes, offset, below.size_bytes());
+  offset = front.add_outside(layout::SectionKind::kFloorPages, offset, page_bytes);
+  front.section(layout::SectionKind::kFloorRoot).checksum = checksum_of_object(nodes.front());
+  front.section(layout::SectionKind::kFloorNodes).checksum = checksum_of(std::as_bytes(below));
+  front.section(layout::SectionKind::kFloorPages).checksum = page_checksum;
+  return offset;
+}
+
 }  // namespace
 
 StoreWriter::StoreWriter(const std::string& path, const StoreWriterOptions& options)
@@ -282,14 +297,18 @@ void StoreWriter::add_floor(const FloorFacts& facts,
   floor_nodes_.clear();
   floor_bytes_ = 0;
   floor_pages_ = std::make_unique<ScratchFile>(files_, folder_, stem_ + ".heights", true);
+  RunningChecksum checksum;
   FloorWriter floor([&](std::span<const std::byte> page) {
+    checksum.add(page);
     floor_pages_->write_at(page, floor_bytes_);
     floor_bytes_ += page.size();
   });
   if (!fill(floor)) {
+    floor_pages_.reset();
     return;
   }
   floor.finish();
+  floor_checksum_ = checksum.value();
   floor_nodes_ = floor.nodes(facts);
 }
 
@@ -318,7 +337,7 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
                                       options_.directory, walk);
   }
   const bool has_floor = !floor_nodes_.empty();
-  Front front(6 + (directory ? 2 : 0) + (has_floor ? 2 : 0));
+  Front front(6 + (directory ? 2 : 0) + (has_floor ? 3 : 0));
   const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
   const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
   const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
@@ -340,16 +359,9 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   layout::FileHeader header{};
   const std::uint64_t pages_end =
       front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
-  header.file_bytes = pages_end;
-  if (has_floor) {
-    const std::uint64_t floor_offset =
-        front.add_outside(layout::SectionKind::kFloorNodes, pages_end,
-                          floor_nodes_.size() * sizeof(layout::FloorNode));
-    front.section(layout::SectionKind::kFloorNodes).checksum =
-        checksum_of_object(floor_nodes_.front());
-    header.file_bytes =
-        front.add_outside(layout::SectionKind::kFloorPages, floor_offset, floor_bytes_);
-  }
+  header.file_bytes =
+      has_floor ? place_floor(front, pages_end, floor_nodes_, floor_bytes_, floor_checksum_)
+                : pages_end;
 
   const PageSlots slots = move_pages_behind(front_bytes);
   if (directory) {

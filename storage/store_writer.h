@@ -144,7 +144,7 @@ class StoreWriter {
   ErrorTable errors_;
   std::vector<layout::FloorNode> floor_nodes_;  ///< Empty: there are no heights of a raster.
   std::unique_ptr<ScratchFile> floor_pages_;
-  std::uint64_t floor_bytes_ = 0;    ///< Of the pages.
+  std::uint64_t floor_bytes_ = 0, floor_checksum_ = 0;  ///< Of the pages.
   std::uint64_t written_bytes_ = 0;  ///< Pages lie at the start of the file until publish().
   std::uint16_t max_rank_ = 0;
   bool published_ = false;

@@ -21,6 +21,7 @@
 #include "storage/record_page.h"
 #include "storage/store_front.h"
 #include "storage/unique_keys.h"
+#include "storage/verify_floor.h"
 #include "storage/verify_t0.h"
 
 namespace ptin {
@@ -133,6 +134,12 @@ void Verifier::run() {
   }
   compare_totals();
   look_at_directory();
+  if (front_.floor) {
+    verify_floor(
+        file_, front_,
+        [this](std::string what, std::string where) { report(std::move(what), std::move(where)); },
+        [this] { check_stop(); });
+  }
   file_.check_unchanged();
 }
 

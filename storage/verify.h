@@ -47,12 +47,14 @@ using VerifyProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 /// - every page descriptor with the union over its records, and every index entry with the union
 ///   over what it describes;
 /// - the directory, where there is one, with what the index says of the pages;
+/// - the heights of a raster, where there are any, with the header and with how they are to be packed;
 /// - the number of records, the largest rank, the least and largest height (over the records'
 ///   intervals too), the flag of voids and the table of errors with the records;
 /// - all vertices with each other: no vertex comes twice.
 ///
-/// Bytes, never triangles: whether each split finds its fan, and each record is contained in those
-/// that it needs, check_hierarchy() finds out (engine/query/refine/hierarchy_check.h).
+/// Bytes, never triangles: whether each split finds its fan, each record is contained in those that it
+/// needs, and the full TIN is that of the raster's heights, check_hierarchy() finds out
+/// (engine/query/refine/hierarchy_check.h).
 ///
 /// Vertex keys are compared exactly: by one bit for each position of the bounds where that fits the
 /// memory, otherwise by sorting, one part of the keys in each pass over the pages.

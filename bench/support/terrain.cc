@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/construct/raster/raster_surface.h"
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/construct/tile/part_surface.h"
 #include "tests/construct/delaunay_tin.h"
 

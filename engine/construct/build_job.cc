@@ -347,11 +347,11 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   const BuiltHierarchy built = build_hierarchy(
       source.make_starter, source.tree, hierarchy_options(job, source, plan), workspace, store);
   job.report.lone_samples = built.lone_samples;
-  require_unchanged(job);
   job.tell(StageProgress{"writing", 0, 1});
   if (source.add_floor) {
     store.add_floor([&](StoreWriter& writer) { source.add_floor(writer, job.resources.stop); });
   }
+  require_unchanged(job);  // the heights are read once more, and have to be those of the records
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);
   workspace.append({{{"publishing", inode}}});
   job.inode_of_output = inode;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/construct/raster/raster_tile.h"
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/geometry/infinity.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/delaunay_tin.h"

@@ -17,6 +17,7 @@
 
 #include "engine/error.h"
 #include "engine/query/living/living_page.h"
+#include "storage/floor.h"
 #include "storage/point_directory.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
@@ -35,6 +36,17 @@ class LargeErrors final : public AttributePredicate {
   }
 };
 
+/// The heights of a raster.
+void use_floor(const StoreFile& store) {
+  const Floor* const floor = store.floor();
+  if (floor == nullptr) {
+    return;
+  }
+  IoCounters counters;
+  floor->visit([](const Floor::Bounds&) { return true; },
+               [](const Floor::TileAt&, const FloorTile&) { return true; }, counters);
+}
+
 void use(const std::string& path, PageAccess access) {
   const auto store = StoreFile::open(path, access);
   IoCounters counters;
@@ -45,6 +57,10 @@ void use(const std::string& path, PageAccess access) {
   } catch (const Error&) {
   }
   store->pages().announce(pages, counters);
+  try {
+    use_floor(*store);
+  } catch (const Error&) {
+  }
   for (std::uint64_t i = 0; i < store->pages().page_count() && i < 200; ++i) {
     try {
       records.clear();

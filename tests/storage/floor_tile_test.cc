@@ -40,14 +40,16 @@ void expect_back(const FloorTile& tile, const std::string& what) {
   ASSERT_EQ(back.heights.size(), tile.samples()) << what;
   for (std::size_t i = 0; i < tile.samples(); ++i) {
     ASSERT_EQ(is_void(back, i), is_void(tile, i)) << what << " " << i;
-    if (!is_void(tile, i)) ASSERT_EQ(back.heights[i], tile.heights[i]) << what << " " << i;
+    if (!is_void(tile, i)) {
+      ASSERT_EQ(back.heights[i], tile.heights[i]) << what << " " << i;
+    }
   }
   EXPECT_EQ(back.lone, tile.lone) << what;
   EXPECT_EQ(packed(back), bytes) << what;
 }
 
 FloorTile made(std::uint32_t width, std::uint32_t height,
-                const std::function<OrderedHeight(std::uint32_t, std::uint32_t)>& at) {
+               const std::function<OrderedHeight(std::uint32_t, std::uint32_t)>& at) {
   FloorTile tile;
   tile.width = width;
   tile.height = height;
@@ -85,13 +87,19 @@ TEST(FloorTile, VoidsOfAllKindsComeBack) {
       FloorTile tile = made(33, 30, [](auto x, auto y) { return 1000 + x * y; });
       tile.is_void.resize(tile.samples());
       for (std::size_t i = 0; i < tile.samples(); ++i) {
-        tile.is_void[i] = is_block ? i >= (1 - share) * static_cast<double>(tile.samples())
-                                   : std::uniform_real_distribution<>(0, 1)(random) < share;
+        tile.is_void[i] =
+            is_block ? static_cast<double>(i) >= (1 - share) * static_cast<double>(tile.samples())
+                     : std::uniform_real_distribution<>(0, 1)(random) < share;
       }
       for (std::size_t i = 0; i < tile.samples(); ++i) {
-        if (tile.is_void[i] == 0) continue;
-        if (random() % 5 == 0) tile.lone.push_back({static_cast<std::uint16_t>(i), random()});
-        tile.heights[i] = random();  // of no account
+        if (tile.is_void[i] == 0) {
+          continue;
+        }
+        if (random() % 5 == 0) {
+          tile.lone.push_back(
+              {static_cast<std::uint16_t>(i), static_cast<std::uint32_t>(random())});
+        }
+        tile.heights[i] = static_cast<std::uint32_t>(random());  // of no account
       }
       expect_back(tile, "share " + std::to_string(share));
     }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "storage/file/checksum.h"
+#include "storage/floor_shape.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
 #include "storage/page_slots.h"
@@ -106,6 +107,39 @@ inline std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
       std::span(file).subspan(node_offset(shape.levels() - 1, 0), layout::kNodeBytes));
 }
 
+// The same of the heights of a raster: pages into leaves, up to the root.
+inline void seal_floor(Bytes& file) {
+  const auto root = section_of(file, layout::SectionKind::kFloorRoot);
+  const auto nodes = section_of(file, layout::SectionKind::kFloorNodes);
+  const auto pages = section_of(file, layout::SectionKind::kFloorPages);
+  const std::uint64_t count = pages.bytes / layout::kFloorPageBytes;
+  if (!holds(file, root.offset, layout::kNodeBytes) || !holds(file, nodes.offset, nodes.bytes) ||
+      !holds(file, pages.offset, pages.bytes) || count == 0) {
+    return;
+  }
+  const FloorTree tree(count);
+  if (nodes.bytes / layout::kNodeBytes < tree.total_nodes() - 1) {
+    return;
+  }
+  const auto node_offset = [&](std::size_t level, std::uint64_t number) {
+    return level == 0 ? root.offset
+                      : nodes.offset + (tree.position(level, number) - 1) * layout::kNodeBytes;
+  };
+  for (std::size_t level = tree.levels(); level-- > 0;) {
+    for (std::uint64_t child = 0; child < tree.entries(level); ++child) {
+      const std::uint64_t offset = level + 1 == tree.levels()
+                                       ? pages.offset + child * layout::kFloorPageBytes
+                                       : node_offset(level + 1, child);
+      set_object(file,
+                 node_offset(level, child / layout::kFloorFanOut) +
+                     offsetof(layout::FloorNode, entry) +
+                     child % layout::kFloorFanOut * sizeof(layout::FloorEntry) +
+                     offsetof(layout::FloorEntry, checksum),
+                 checksum_of(std::span(file).subspan(offset, layout::kNodeBytes)));
+    }
+  }
+}
+
 /// Computes every checksum again, as far as the structure can be followed: pages, leaves, inner
 /// nodes, sections, table, header. Every byte pattern is safe to pass.
 inline void seal(Bytes& file) {
@@ -113,6 +147,7 @@ inline void seal(Bytes& file) {
     return;
   }
   layout::FileHeader h = header_of(file);
+  seal_floor(file);
   std::vector<layout::SectionEntry> sections = sections_of(file);
   for (auto& s : sections) {
     if (s.kind == static_cast<std::uint32_t>(layout::SectionKind::kIndex)) {

@@ -44,20 +44,24 @@ StarredRecords StoreContent::all_records() const {
 }
 
 StoreContent flat_square(std::int32_t side, HeightType type) {
+  return flat_rectangle(side, side, type);
+}
+
+StoreContent flat_rectangle(std::int32_t width, std::int32_t height_of_it, HeightType type) {
   StoreContent c;
   c.facts.map = {500000.0, 4000000.0, 30.0, 30.0};
   if (type == HeightType::int32) {
     c.facts.heights = {HeightType::int32, 0.25, 100.0};
   }
-  c.facts.bounds = {0, 0, side, side};
+  c.facts.bounds = {0, 0, width, height_of_it};
   c.facts.min_height = -100.0;
   c.facts.max_height = 4000.0;
   c.facts.source_samples = 5;  // one was left out: the range of heights is not the vertices'
   const HeightBits height = c.facts.heights.bits(12.0);
   c.t0.vertices = {{{0, 0}, height, 1},
-                   {{side, 0}, height, 1},
-                   {{side, side}, height, 1},
-                   {{0, side}, height, 1}};
+                   {{width, 0}, height, 1},
+                   {{width, height_of_it}, height, 1},
+                   {{0, height_of_it}, height, 1}};
   c.t0.triangles = {{{0, 1, 2}, 0}, {{0, 2, 3}, 0}};
   return c;
 }

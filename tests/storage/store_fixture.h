@@ -37,6 +37,7 @@ struct StoreContent {
 /// Two triangles over a square of `side` grid units and no record; heights as float32, or as int32
 /// in steps of 0.25.
 [[nodiscard]] StoreContent flat_square(std::int32_t side, HeightType type = HeightType::float32);
+[[nodiscard]] StoreContent flat_rectangle(std::int32_t width, std::int32_t height, HeightType type);
 
 struct RandomRecords {
   std::uint64_t seed = 1;

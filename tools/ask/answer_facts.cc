@@ -49,6 +49,8 @@ Fields<QueryCost> cost_fields() {
   fields.add("records_applied", kCount, "", "Splits made.", &QueryCost::records_applied);
   fields.add("stars_read", kCount, "", "Stars decoded, each with all its triangles.",
              &QueryCost::stars_read);
+  fields.add("samples_read", kCount, "", "Samples of a raster's heights decoded.",
+             &QueryCost::samples_read);
   fields.add_parts("", io_fields(), &QueryCost::io);
   fields.add("seconds", "number", "seconds", "On the clock.", &QueryCost::seconds);
   return fields;

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 

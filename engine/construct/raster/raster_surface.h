@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/part_surface.h"
 

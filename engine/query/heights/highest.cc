@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/geometry/infinity.h"
 #include "engine/query/heights/region_border.h"
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/level_stars.h"
 #include "engine/query/select/detail.h"
 #include "storage/packed_rtree.h"
@@ -36,7 +37,7 @@ constexpr std::uint64_t kBytesACandidate = 64;
 
 /// Takes the triangles that live at the level, those of the highest stars first. "Above" means
 /// below when the lowest are wanted.
-class HighestSearch final : private BestStarVisitor {
+class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
  public:
   HighestSearch(const OpenedTerrain& terrain, const HighestRequest& request)
       : terrain_(terrain),
@@ -95,6 +96,10 @@ class HighestSearch final : private BestStarVisitor {
   }
 
   void search() {
+    if (const Floor* const floor = detail_.is_full() ? terrain_.floor() : nullptr) {
+      visit_floor_best_first(*floor, facts_.heights, filter_.box, *this, cut_off(), context_.cost);
+      return;
+    }
     const auto look = [&](const LivingTriangle& t) { look_at(t); };
     stars_.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); }, is_surface, look);
     store_.star_index().search_stars_best_first(filter_, *this, cut_off(), context_.cost.io);
@@ -104,11 +109,25 @@ class HighestSearch final : private BestStarVisitor {
 
   /// The highest vertex of these stars, at the least key in their box.
   [[nodiscard]] Merit bound(const StarAttributes& a) const override {
-    if (is_empty(a.heights) || (region_ && !region_->meets(a.box))) {
+    return bound_of_cells(a.box, a.heights);
+  }
+  [[nodiscard]] Merit bound_of_cells(const GridBox& box, const Interval& codes) const override {
+    if (is_empty(codes) || (region_ && !region_->meets(box))) {
       return kNoMerit;
     }
-    return {request_.lowest ? -a.heights.lo : a.heights.hi, key_of({a.box.min_x, a.box.min_y})};
+    return {request_.lowest ? -codes.lo : codes.hi, key_of({box.min_x, box.min_y})};
   }
+  bool begin_cells(const GridBox& /*box*/, Merit /*left*/) override {
+    context_.check_stop();
+    context_.admit(best_.size() * kBytesACandidate);
+    return true;
+  }
+  void take_cell(const LivingTriangle& t) override {
+    if (!t.is_void) {
+      look_at(t);
+    }
+  }
+  Merit end_cells() override { return cut_off(); }
 
   Merit visit(PageId page, const StarAttributes& /*a*/) override {
     context_.check_stop();

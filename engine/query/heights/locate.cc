@@ -73,10 +73,10 @@ void locate_on_floor(const Floor& floor, const StoreFacts& facts, const PointGro
       prefetch(&ahead->triangle.back());
     }
     const PointOnCurve& p = group.points[i];
-    const auto within = triangles.within(p.spot, group.context.cost.io);
+    const auto within = triangles.within(p.spot, group.context.cost);
     group.answers[p.index] =
         within ? answer_within(*within, facts)
-               : answer_of(triangle_on_sides(triangles, p.spot, group.context.cost.io), p.spot,
+               : answer_of(triangle_on_sides(triangles, p.spot, group.context.cost), p.spot,
                            group.detail, facts);
   }
 }

@@ -62,6 +62,39 @@ bool LineTracer::add(const LivingTriangle& t) {
   return add_star(star, ring);
 }
 
+bool LineTracer::add(const RasterSquare& square) {
+  cells_.take(square, heights_);
+  if (cells_.least() > cells_.greatest()) {
+    return true;
+  }
+  std::uint32_t level =
+      levels_.band_of(heights_.code(height_of_ordered(cells_.least(), heights_.type)));
+  if (level == levels_.size() || levels_.least_above(level) > cells_.greatest()) {
+    return true;
+  }
+  cells_.keep_if([&](GridPoint a, GridPoint b, GridPoint c) {
+    return is_in_tile(scope_.tile, a, b, c) &&
+           (scope_.region == nullptr || scope_.region->meets(a, b, c));
+  });
+  for (; level < levels_.size() && levels_.least_above(level) <= cells_.greatest(); ++level) {
+    if (batch_.size() >= kBatch) {
+      join_batch();
+    }
+    const std::size_t segments = cells_.find_crossed(levels_.least_above(level));
+    if (!has_room(segments)) {
+      return false;
+    }
+    counts_.segments += segments;
+    cells_.follow(
+        [&](const Corner& below, const Corner& above) {
+          batch_.begin(cut(below, above, level), level);
+        },
+        [&](const Corner& below, const Corner& above) { batch_.extend(cut(below, above, level)); });
+  }
+  counts_.triangles += cells_.crossed_once();
+  return true;
+}
+
 /// Adds the triangles of a star whose centre has a height.
 bool LineTracer::add_star(const LivingStar& star, std::span<const LivingCorner> ring) {
   centre_ = corner_of(star.u, star.height);

@@ -12,6 +12,7 @@
 #include "engine/geometry/box.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/key_table.h"
+#include "engine/query/isoline/isoline_cells.h"
 #include "engine/query/isoline/isoline_chains.h"
 #include "engine/query/isoline/isoline_pieces.h"
 #include "engine/query/isoline/levels.h"
@@ -43,7 +44,7 @@ struct TracedPieces {
 /// line ends where the surface does, at a border or a void, and where the triangles do.
 ///
 /// Lines are followed within a star from triangle to triangle, as these lie side by side around its
-/// centre: a chain. Chains are joined by the edges on which they end, those that came one after the
+/// centre, or within a square of a raster: a chain. Chains are joined by the edges on which they end, those that came one after the
 /// other first.
 /// Threads: one owner. What was allocated is used again.
 class LineTracer {
@@ -63,6 +64,14 @@ class LineTracer {
   /// Cost: linear in the corners, and in the segments.
   [[nodiscard]] bool add(const LivingStars& stars);
   [[nodiscard]] bool add(const LivingTriangle& t);
+  /// Whether add() takes a square: not where it counts vertices, nor a large one.
+  [[nodiscard]] bool takes(const RasterSquare& square) const noexcept {
+    return !scope_.counts_vertices && square.width <= CellLines::kMostSamples &&
+           square.height <= CellLines::kMostSamples;
+  }
+  /// The same of the cells of a raster, of which lines are followed through the whole square.
+  /// REQUIRES: takes(square)
+  [[nodiscard]] bool add(const RasterSquare& square);
 
   /// Joins what was added: pieces that end where the triangles do, and rings. May be called once; what
   /// it returns is kept until begin() is called.
@@ -77,10 +86,7 @@ class LineTracer {
 
  private:
   /// A corner with a height.
-  struct Corner {
-    GridPoint position;
-    std::uint32_t height;  ///< Ordered.
-  };
+  using Corner = CellLines::Corner;
 
   [[nodiscard]] bool add_star(const LivingStar& star, std::span<const LivingCorner> ring);
   void find_wanted(const LivingStar& star, std::span<const LivingCorner> ring);
@@ -107,6 +113,7 @@ class LineTracer {
   ChainSet chains_;  ///< What batches were joined to.
   TracedPieces traced_;
   KeyTable vertices_;
+  CellLines cells_;  ///< Of the square at hand.
   /// The star at hand: its centre, its corners, and of each triangle whether it is traced.
   Corner centre_{};
   std::array<Corner, layout::kMostDegree + 1> corners_{};

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "engine/mesh/raster_cell.h"
+#include "storage/page_columns.h"
 
 namespace ptin {
 
@@ -69,9 +70,9 @@ class CellsOfTile {
 
   /// Takes the triangles of those cells that the tile has.
   template <class Take>
-  void visit(const Floor::TileBounds& at, const FloorTile& tile, const Cells& cells,
+  void visit(std::uint32_t column, std::uint32_t row, const FloorTile& tile, const Cells& cells,
              const Take& take) const {
-    const std::int64_t left = shape_.first_of(at.column), low = shape_.first_of(at.row);
+    const std::int64_t left = shape_.first_of(column), low = shape_.first_of(row);
     const std::int64_t last_x = std::min<std::int64_t>(cells.max_x, left + tile.width - 2);
     const std::int64_t last_y = std::min<std::int64_t>(cells.max_y, low + tile.height - 2);
     const GridPoint first{static_cast<std::int32_t>(left), static_cast<std::int32_t>(low)};
@@ -121,7 +122,7 @@ Cells cells_at(Spot spot) noexcept {
 }
 
 /// The tiles that have some cells; none where the raster has none of them.
-std::optional<Floor::Tiles> tiles_of(const FloorShape& shape, const Cells& cells) {
+std::optional<TileRange> tiles_of(const FloorShape& shape, const Cells& cells) {
   const std::int64_t last_x = std::int64_t{shape.width} - 2;
   const std::int64_t last_y = std::int64_t{shape.height} - 2;
   if (cells.max_x < 0 || cells.max_y < 0 || cells.min_x > last_x || cells.min_y > last_y) {
@@ -130,49 +131,118 @@ std::optional<Floor::Tiles> tiles_of(const FloorShape& shape, const Cells& cells
   const auto tile = [&](std::int64_t cell, std::int64_t last) {
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(cell, 0, last) >> shape.side_log2);
   };
-  return Floor::Tiles{tile(cells.min_x, last_x), tile(cells.min_y, last_y),
-                      tile(cells.max_x, last_x), tile(cells.max_y, last_y)};
+  return TileRange{tile(cells.min_x, last_x), tile(cells.min_y, last_y), tile(cells.max_x, last_x),
+                   tile(cells.max_y, last_y)};
 }
 
 }  // namespace
 
 std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box) {
-  const std::optional<Floor::Tiles> tiles = tiles_of(shape, cells_of(box));
+  const std::optional<TileRange> tiles = tiles_of(shape, cells_of(box));
   if (!tiles) return 0;
   const std::uint64_t columns = std::uint64_t{tiles->last_column} - tiles->first_column + 1;
   const std::uint64_t rows = std::uint64_t{tiles->last_row} - tiles->first_row + 1;
   return (columns * rows) << (2 * shape.side_log2);
 }
 
+namespace {
+
+/// The samples of tiles with heights in the order of those that are stored elsewhere in the file.
+class SquareOfTile {
+ public:
+  SquareOfTile(const Floor& floor, const HeightEncoding& heights)
+      : shape_(floor.facts().shape),
+        numbers_(floor.numbers()),
+        heights_(heights),
+        has_step_(floor.facts().step != 0) {}
+
+  /// The result is there until the next call, and as long as the tile.
+  [[nodiscard]] RasterSquare of(const Floor::TileAt& at, const FloorTile& tile) {
+    RasterSquare square;
+    square.first = {static_cast<std::int32_t>(shape_.first_of(at.column)),
+                    static_cast<std::int32_t>(shape_.first_of(at.row))};
+    square.width = tile.width;
+    square.height = tile.height;
+    square.heights = tile.heights;
+    square.is_void = tile.is_void;
+    if (has_step_) {
+      ordered_.resize(tile.samples());
+      std::transform(
+          tile.heights.begin(), tile.heights.end(), ordered_.begin(),
+          [&](OrderedHeight k) { return ordered_height(numbers_.bits(k), heights_.type); });
+      square.heights = ordered_;
+    }
+    return square;
+  }
+
+ private:
+  const FloorShape& shape_;
+  const FloorNumbers& numbers_;
+  const HeightEncoding heights_;
+  const bool has_step_;
+  std::vector<OrderedHeight> ordered_;
+};
+
+}  // namespace
+
 bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorWish& wish,
                  const std::function<bool(std::size_t)>& begin,
-                 const std::function<void(const LivingTriangle&)>& take, IoCounters& counters) {
-  const FloorShape& shape = floor.facts().shape;
-  const std::optional<Floor::Tiles> tiles = tiles_of(shape, cells_of(wish.box));
-  if (!tiles) return true;
-  const auto wants = [&](const Floor::TileBounds& b) {
-    if (!wish.may_hold) return true;
-    const auto at = [](std::uint32_t v) { return static_cast<std::int32_t>(v); };
-    const GridBox box{at(shape.first_of(b.column)), at(shape.first_of(b.row)),
-                      at(shape.first_of(b.column) + shape.samples_of(b.column, shape.width) - 1),
-                      at(shape.first_of(b.row) + shape.samples_of(b.row, shape.height) - 1)};
-    const Interval codes = b.least > b.greatest
-                               ? Interval{}
-                               : Interval{heights.code(floor.numbers().bits(b.least)),
-                                          heights.code(floor.numbers().bits(b.greatest))};
-    return wish.may_hold(box, codes);
-  };
+                 const std::function<void(const LivingTriangle&)>& take, QueryCost& cost) {
   const CellsOfTile cells(floor, heights);
+  SquareOfTile square(floor, heights);
   return floor.visit(
-      *tiles, wants,
-      [&](const Floor::TileBounds& at, const FloorTile& tile) {
+      [&](const Floor::Bounds& b) {
+        return meets(b.box, wish.box) && (!wish.may_hold || wish.may_hold(b.box, b.codes));
+      },
+      [&](const Floor::TileAt& at, const FloorTile& tile) {
         if (!begin(2 * tile.samples())) return false;
-        cells.visit(at, tile, cells_of(wish.box), [&](const LivingTriangle& t) {
+        cost.samples_read += tile.samples();
+        if (wish.take_cells && tile.width > 1 && tile.height > 1 &&
+            wish.take_cells(square.of(at, tile))) {
+          return true;
+        }
+        cells.visit(at.column, at.row, tile, cells_of(wish.box), [&](const LivingTriangle& t) {
           if (meets(box_of(t), wish.box)) take(t);
         });
         return true;
       },
-      counters);
+      cost.io);
+}
+
+namespace {
+
+/// Hands the cells of tiles on.
+class BestTiles final : public Floor::BestVisitor {
+ public:
+  BestTiles(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
+            BestCellVisitor& visitor, QueryCost& cost)
+      : cells_(floor, heights), box_(box), visitor_(visitor), cost_(cost) {}
+  [[nodiscard]] Merit bound(const Floor::Bounds& b) const override {
+    return meets(b.box, box_) ? visitor_.bound_of_cells(b.box, b.codes) : kNoMerit;
+  }
+  [[nodiscard]] bool wants_all() const override { return visitor_.wants_all_cells(); }
+  Merit visit(const Floor::TileAt& at, const FloorTile& tile, Merit left) override {
+    if (!visitor_.begin_cells(at.bounds.box, left)) return kBestMerit;
+    cost_.samples_read += tile.samples();
+    cells_.visit(at.column, at.row, tile, cells_of(box_), [&](const LivingTriangle& t) {
+      if (meets(box_of(t), box_)) visitor_.take_cell(t);
+    });
+    return visitor_.end_cells();
+  }
+
+ private:
+  CellsOfTile cells_;
+  GridBox box_;
+  BestCellVisitor& visitor_;
+  QueryCost& cost_;
+};
+
+}  // namespace
+
+void visit_floor_best_first(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
+                            BestCellVisitor& visitor, Merit cut_off, QueryCost& cost) {
+  BestTiles tiles(floor, heights, box, visitor, cost);
+  floor.visit_best_first(tiles, cut_off, cost.io);
 }
 
 LivingTriangle FloorTriangle::living(const HeightEncoding& heights) const noexcept {
@@ -198,11 +268,12 @@ WeightedCodes FloorTriangle::codes(const HeightEncoding& heights) const noexcept
 }
 
 const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint32_t row,
-                                                IoCounters& counters) {
+                                                QueryCost& cost) {
   Kept& kept = kept_[column % kKeptSide + kKeptSide * (row % kKeptSide)];
   if (kept.column != column || kept.row != row) {
     kept.column = UINT32_MAX;  // until it is read
-    floor_.read(column, row, page_, kept.tile, counters);
+    floor_.read(column, row, page_, kept.tile, cost.io);
+    cost.samples_read += kept.tile.samples();
     kept.column = column;
     kept.row = row;
   }
@@ -211,7 +282,7 @@ const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint3
 
 std::uint64_t FloorAtSpots::along(const FloorShape& shape, Spot spot) noexcept {
   const auto tile = [&](std::int64_t v, std::uint32_t samples) {
-    const std::int64_t last = std::int64_t{samples} - 2;
+    const std::int64_t last = std::max<std::int64_t>(0, std::int64_t{samples} - 2);
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(v >> kSpotBits, 0, last) >>
                                       shape.side_log2);
   };
@@ -222,7 +293,7 @@ void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) c
   if (!floor_.is_far()) return;
   std::vector<std::uint64_t> keys;
   for (const Spot spot : spots) {
-    const std::optional<Floor::Tiles> tiles = tiles_of(floor_.facts().shape, cells_at(spot));
+    const std::optional<TileRange> tiles = tiles_of(floor_.facts().shape, cells_at(spot));
     if (!tiles) continue;
     for (std::uint32_t row = tiles->first_row; row <= tiles->last_row; ++row) {
       for (std::uint32_t column = tiles->first_column; column <= tiles->last_column; ++column) {
@@ -234,7 +305,7 @@ void FloorAtSpots::announce(std::span<const Spot> spots, IoCounters& counters) c
   floor_.announce(keys, counters);
 }
 
-std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, IoCounters& counters) {
+std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, QueryCost& cost) {
   constexpr std::int64_t kUnit = std::int64_t{1} << kSpotBits;
   const FloorShape& shape = floor_.facts().shape;
   const std::int64_t x = spot.x >> kSpotBits, y = spot.y >> kSpotBits;
@@ -248,7 +319,7 @@ std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, IoCounters& counter
   const GridPoint first{static_cast<std::int32_t>(shape.first_of(column)),
                         static_cast<std::int32_t>(shape.first_of(row))};
   const CellCorners corners =
-      corners_of(tile_at(column, row, counters).tile, numbers_, first,
+      corners_of(tile_at(column, row, cost).tile, numbers_, first,
                  static_cast<std::int32_t>(x) - first.x, static_cast<std::int32_t>(y) - first.y);
   const Diagonal diagonal = cell_diagonal(cell_of(corners, heights_), corners[0].position);
   const bool is_rising = diagonal == Diagonal::kRising;
@@ -270,16 +341,16 @@ std::optional<FloorTriangle> FloorAtSpots::within(Spot spot, IoCounters& counter
 }
 
 void FloorAtSpots::visit(Spot spot, const std::function<void(const LivingTriangle&)>& take,
-                         IoCounters& counters) {
+                         QueryCost& cost) {
   const FloorShape& shape = floor_.facts().shape;
   const Cells wanted = cells_at(spot);
-  const std::optional<Floor::Tiles> tiles = tiles_of(shape, wanted);
+  const std::optional<TileRange> tiles = tiles_of(shape, wanted);
   if (!tiles) return;
   const CellsOfTile cells(floor_, heights_);
   for (std::uint32_t row = tiles->first_row; row <= tiles->last_row; ++row) {
     for (std::uint32_t column = tiles->first_column; column <= tiles->last_column; ++column) {
-      const Kept& kept = tile_at(column, row, counters);
-      cells.visit({column, row, 0, 0}, kept.tile, wanted, take);
+      const Kept& kept = tile_at(column, row, cost);
+      cells.visit(column, row, kept.tile, wanted, take);
     }
   }
 }

@@ -69,7 +69,7 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 }  // namespace
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
-  if (const Floor* const floor = floor_for(terrain_, stars_.detail())) {
+  if (const Floor* const floor = stars_.detail().is_full() ? terrain_.floor() : nullptr) {
     return read_floor(*floor, place, context, visitor);
   }
   stars_.clear();
@@ -112,6 +112,7 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
     return (!asks_heights || (!is_empty(codes) && meets(codes, place.heights))) &&
            (also == nullptr || also->may_hold({box, codes, kInfinity, -kInfinity}));
   };
+  wish.take_cells = [&](const RasterSquare& square) { return visitor.take_cells(square); };
   const std::uint64_t samples = floor_samples(floor.facts().shape, place.box);
   if (!visitor.expect(samples)) {
     return false;
@@ -127,7 +128,7 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
           visitor.take(t);
         }
       },
-      context.cost.io);
+      context.cost);
 }
 
 /// Whether the directory is asked instead of the index: it is read in one round, and knows of boxes

@@ -9,6 +9,7 @@
 
 #include "engine/query/living/living_stars.h"
 #include "engine/query/living/living_triangle.h"
+#include "engine/query/living/raster_square.h"
 
 namespace ptin {
 
@@ -28,6 +29,8 @@ class LivingVisitor {
   /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles
   /// nothing more is asked yet. True: it took them; false: the triangles come one by one.
   virtual bool take_stars(const LivingStars& /*stars*/) { return false; }
+  /// The same of the full TIN of a raster: called with the cells of a tile that meets the box.
+  virtual bool take_cells(const RasterSquare& /*square*/) { return false; }
   virtual void take(const LivingTriangle& t) = 0;
 };
 

@@ -307,27 +307,27 @@ void find_on_floor(const StoreFile& store, const Floor& floor, std::span<const S
     if (i % kStopInterval == 0) {
       context.check_stop();
     }
-    if (const auto within = triangles.within(spots[i], context.cost.io)) {
+    if (const auto within = triangles.within(spots[i], context.cost)) {
       found[i] = {within->living(store.facts().heights), true, true};
     } else {
-      found[i] = triangle_on_sides(triangles, spots[i], context.cost.io);
+      found[i] = triangle_on_sides(triangles, spots[i], context.cost);
     }
   }
 }
 
 }  // namespace
 
-TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, IoCounters& counters) {
+TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, QueryCost& cost) {
   TriangleAt found;
   triangles.visit(
-      spot, [&](const LivingTriangle& t) { offer(t, spot, found); }, counters);
+      spot, [&](const LivingTriangle& t) { offer(t, spot, found); }, cost);
   return found;
 }
 
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
-  if (const Floor* const floor = floor_for(terrain, detail)) {
+  if (const Floor* const floor = detail.is_full() ? terrain.floor() : nullptr) {
     find_on_floor(terrain.store(), *floor, spots, found, context);
   } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);

@@ -31,8 +31,7 @@ struct TriangleAt {
 
 /// The same of the full TIN of a raster, for a spot that is not FloorAtSpots::within() one.
 /// @throws Error corruption, io_error
-[[nodiscard]] TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot,
-                                           IoCounters& counters);
+[[nodiscard]] TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, QueryCost& cost);
 
 /// Finds the triangles at spots.
 /// @param detail Of which level.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "engine/mesh/split.h"
 #include "engine/mesh/star.h"
 #include "engine/mesh/validate.h"
+#include "engine/query/refine/floor_check.h"
 #include "engine/query/refine/refinement.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/accounting.h"
@@ -85,7 +87,11 @@ class HierarchyCheck {
         heights_(terrain.store().facts().heights),
         request_(request),
         context_(request.limits, terrain.store().path()),
-        report_(report) {}
+        report_(report) {
+    if (const Floor* const floor = terrain.store().floor()) {
+      floor_.emplace(*floor, terrain.store().facts());
+    }
+  }
 
   void run();
 
@@ -95,6 +101,7 @@ class HierarchyCheck {
   void look_into(const GridCell& cell);
   void read(const GridBox& box);
   void apply_all(const GridCell& cell);
+  void look_at_floor(const GridCell& cell);
   [[nodiscard]] std::string apply(const VertexSplit& r, Star& star, SplitResult& made);
   [[nodiscard]] std::string fault_in_needs(const VertexSplit& r, const Star& star,
                                            const SplitResult& made) const;
@@ -115,9 +122,10 @@ class HierarchyCheck {
   const HierarchyRequest& request_;
   QueryContext context_;
   HierarchyReport& report_;
-  std::set<std::string> told_;  ///< A record that is not applied is met in many cells.
-  std::uint64_t dying_ = 0;     ///< Triangles of stars and T0 that are said to die.
-  std::uint64_t deaths_ = 0;    ///< Triangles that a record replaces.
+  std::set<std::string> told_;       ///< A record that is not applied is met in many cells.
+  std::uint64_t dying_ = 0;          ///< Triangles of stars and T0 that are said to die.
+  std::uint64_t deaths_ = 0;         ///< Triangles that a record replaces.
+  std::optional<FloorCheck> floor_;  ///< None: the file has no heights of a raster.
 
   // The cell at hand:
   std::vector<CellRecord> records_;
@@ -182,8 +190,11 @@ std::uint64_t HierarchyCheck::bytes_for(const GridBox& box) {
   std::vector<PageId> pages;
   terrain_.index().search(MeetsBox(box), pages, context_.cost.io);
   const Tin& t0 = terrain_.t0();
-  return bytes_of(t0) + t0.vertices.size() * kValidationBytes +
-         cell_bytes(most_records(terrain_.store(), pages));
+  const std::uint64_t records = most_records(terrain_.store(), pages);
+  // Every sample is a vertex. The rim of a cell is far less than the cell, or less than a page.
+  const std::uint64_t floor_bytes =
+      floor_ ? FloorCheck::kPositionBytes * (records + t0.vertices.size()) : 0;
+  return bytes_of(t0) + t0.vertices.size() * kValidationBytes + cell_bytes(records) + floor_bytes;
 }
 
 void HierarchyCheck::look_into(const GridCell& cell) {
@@ -273,8 +284,22 @@ void HierarchyCheck::apply_all(const GridCell& cell) {
     makers_.resize(tin_.triangles.size());
     for (const TriangleId t : star.triangles) makers_[t] = order_[i];
   }
-  if (std::string broken = validate(tin_); !broken.empty() && told_.insert(broken).second) {
-    report(std::move(broken), "the full TIN");
+  if (std::string broken = validate(tin_); !broken.empty()) {
+    if (told_.insert(broken).second) report(std::move(broken), "the full TIN");
+    return;
+  }
+  look_at_floor(cell);
+}
+
+/// Holds the full TIN of a cell against the heights of the raster. In a file whose vertices are not as
+/// many as its samples, which verify_store() tells, a cell may have any number of these.
+void HierarchyCheck::look_at_floor(const GridCell& cell) {
+  const StoreFile& store = terrain_.store();
+  const FloorShape* const shape = floor_ ? &store.floor()->facts().shape : nullptr;
+  const std::uint64_t vertices = store.record_count() + terrain_.t0().vertices.size();
+  if (shape == nullptr || vertices != std::uint64_t{shape->width} * shape->height) return;
+  if (auto fault = floor_->fault_in(tin_, cell, context_.cost.io)) {
+    report(std::move(fault->what), std::move(fault->where));
   }
 }
 

@@ -45,7 +45,8 @@ struct HierarchyReport {
 ///   heights, its roi holds P(u), its interval of heights those of u and of the corners of P(u);
 /// - the triangles of its fan die at its error, by the stars and T0 that hold them; and no others
 ///   die.
-/// The mesh of each cell is validated (mesh/validate.h). Where no fault is found, the theorem of
+/// The mesh of each cell is validated (mesh/validate.h), and held against the heights of the raster where
+/// the file has them (floor_check.h). Where no fault is found, the theorem of
 /// engine/DESIGN.md, section 2.4, holds for the file, and that of section 2.10, so that no question
 /// meets a record that does not fit, and answers by stars are those by splits. What only the source
 /// can show is not looked at: whether errors and deviations are large enough.

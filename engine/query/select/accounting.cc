@@ -13,6 +13,7 @@ void QueryCost::add_counts(const QueryCost& part) noexcept {
   records_examined += part.records_examined;
   records_applied += part.records_applied;
   stars_read += part.stars_read;
+  samples_read += part.samples_read;
   io.index_nodes += part.io.index_nodes;
   io.pages += part.io.pages;
   io.bytes_read += part.io.bytes_read;

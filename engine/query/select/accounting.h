@@ -24,6 +24,8 @@ struct QueryCost {
   /// Stars decoded, each with all its triangles: those of the pages read that may hold what was
   /// asked for.
   std::uint64_t stars_read = 0;
+  /// Samples of a raster's heights decoded: those of the tiles read.
+  std::uint64_t samples_read = 0;
   IoCounters io;
   double seconds = 0.0;  ///< Elapsed time of the answer.
 

@@ -52,6 +52,8 @@ class Detail {
   /// True when tolerance() alone tells what is left out. False where a number of vertices cuts
   /// between records of one error.
   [[nodiscard]] bool is_by_error() const noexcept { return !last_; }
+  /// Nothing is left out: the level is the full TIN.
+  [[nodiscard]] bool is_full() const noexcept { return is_by_error() && tolerance_ < 0; }
   /// The error up to which triangles have died at the level: tolerance(), or the error of the last
   /// record kept. Which triangles die at the latter, the records kept decide.
   [[nodiscard]] double level() const noexcept { return last_ ? last_->error : tolerance_; }

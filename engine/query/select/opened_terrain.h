@@ -43,9 +43,11 @@ class OpenedTerrain {
   void use_index(std::shared_ptr<const RecordIndex> index);
 
   /// The heights of a raster, from which the full TIN follows; null: the file has none, or stars are to
-  /// answer.
+  /// answer, or another index is in use, which is asked for records.
   /// @throws Error as StoreFile::floor()
-  [[nodiscard]] const Floor* floor() const { return uses_floor_ ? store_->floor() : nullptr; }
+  [[nodiscard]] const Floor* floor() const {
+    return uses_floor_ && !uses_other_index() ? store_->floor() : nullptr;
+  }
   /// Has the full TIN answered from the heights of a raster, where the file has them, or from stars as a
   /// level is, for tests and `--by stars`; the answers are the same. Not thread-safe.
   void use_floor(bool uses) noexcept { uses_floor_ = uses; }

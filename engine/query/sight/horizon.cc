@@ -156,8 +156,8 @@ void Horizon::raise_in(std::size_t bucket, Direction from, Direction to, const P
   }
 }
 
-bool Horizon::sees(const Offset& p, Side side) const noexcept {
-  const Direction d{p.x, p.y};
+bool Horizon::sees(const Offset& p, Side side, const Offset& along) const noexcept {
+  const Direction d{along.x, along.y};
   const std::size_t bucket = bucket_of(d);
   const std::vector<Piece>& pieces = buckets_[bucket];
   std::size_t k = 0;

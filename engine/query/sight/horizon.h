@@ -43,7 +43,12 @@ class Horizon {
 
   /// True when no edge raised so far rises strictly above the ray to `p`. REQUIRES: `p` is not
   /// above or below the eye itself. Cost: the pieces in the bucket.
-  [[nodiscard]] bool sees(const Offset& p, Side side = Side::kBoth) const noexcept;
+  [[nodiscard]] bool sees(const Offset& p, Side side = Side::kBoth) const noexcept {
+    return sees(p, side, p);
+  }
+  /// The same where `p` lies in the direction of `along` but for its rounding: the pieces are those that
+  /// meet in that direction.
+  [[nodiscard]] bool sees(const Offset& p, Side side, const Offset& along) const noexcept;
 
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
 

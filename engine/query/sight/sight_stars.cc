@@ -108,8 +108,10 @@ GridBox SightStars::box_of(const Part& part) const noexcept {
           whole(std::ceil(std::max(x0, x1))), whole(std::ceil(std::max(y0, y1)))};
 }
 
-Merit SightStars::bound(const StarAttributes& a) const {
-  const std::optional<Part> part = part_in(a.box);
+Merit SightStars::bound(const StarAttributes& a) const { return bound_of_cells(a.box, a.heights); }
+
+Merit SightStars::bound_of_cells(const GridBox& box, const Interval& codes) const {
+  const std::optional<Part> part = part_in(box);
   if (!part) {
     return {-kInfinity};
   }
@@ -117,7 +119,7 @@ Merit SightStars::bound(const StarAttributes& a) const {
     return {0.0};
   }
   const double top =
-      facts_.heights.height_of_code(a.heights.hi) + facts_.finest_deviation + line_.rounding();
+      facts_.heights.height_of_code(codes.hi) + facts_.finest_deviation + line_.rounding();
   const Ray& ray = line_.ray();
   const double above = top - ray.lowest(part->from, part->to);
   // All that doubles and the level may hide of a height is in `top`, so the bound errs upward.
@@ -173,13 +175,29 @@ void SightStars::look_at(const Part& part) {
   }
 }
 
+/// Whether the budget ends the search before what has such a bound.
+bool SightStars::is_cut_here(Merit bound) {
+  context_.check_stop();
+  is_cut_ = out_of_budget();
+  cut_bound_ = is_cut_ ? bound.value : cut_bound_;
+  return is_cut_;
+}
+
+bool SightStars::begin_cells(const GridBox& box, Merit left) {
+  if (is_cut_here(left)) {
+    return false;
+  }
+  look_at(part_in(box).value_or(part_));
+  // Twice, since prefer_exact() copies the pieces into another array.
+  context_.admit(2 * line_.pieces.capacity() * sizeof(SightPiece) +
+                 (coarse_ == nullptr ? 0 : coarse_->bytes()));
+  return true;
+}
+
 Merit SightStars::visit(PageId page, const StarAttributes& a) {
-  if (out_of_budget()) {
-    is_cut_ = true;
-    cut_bound_ = bound(a).value;
+  if (is_cut_here(bound(a))) {
     return kBestMerit;
   }
-  context_.check_stop();
   look_at(part_in(a.box).value_or(part_));
   stars_->read(page, filter_, context_);
   stars_->visit_page([&](const GridBox& box) { return meets(box, filter_.box); },
@@ -203,6 +221,10 @@ void SightStars::begin_search(Aim aim, Part part, LevelStars& stars) {
 /// Looks for triangles of a level along a part of the way.
 void SightStars::search(Aim aim, Part part, LevelStars& stars) {
   begin_search(aim, part, stars);
+  if (const Floor* const floor = stars.detail().is_full() ? terrain_.floor() : nullptr) {
+    visit_floor_best_first(*floor, facts_.heights, box_of(part), *this, {cut_off()}, context_.cost);
+    return;
+  }
   stars.visit_t0([&](const GridBox& box) { return meets(box, filter_.box); },
                  [&](const LivingTriangle& t) { take(t); });
   StarFilter filter;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/level_stars.h"
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/living/triangle_on_line.h"
@@ -17,8 +18,9 @@
 namespace ptin {
 
 /// Looks up the triangles that live at the level and may decide the line, those that most likely do
-/// so first. Pages whose stars end below the line are never read. Threads: one owner.
-class SightStars final : public SightSearch, private BestStarVisitor {
+/// so first. Pages that end below the line are never read. Those of the full TIN of a raster come from
+/// its heights. Threads: one owner.
+class SightStars final : public SightSearch, private BestStarVisitor, private BestCellVisitor {
  public:
   /// All borrowed for the life of the search.
   /// @param coarse  A coarse level of the terrain; null: none.
@@ -49,6 +51,11 @@ class SightStars final : public SightSearch, private BestStarVisitor {
 
   [[nodiscard]] Merit bound(const StarAttributes& a) const override;
   Merit visit(PageId page, const StarAttributes& a) override;
+  [[nodiscard]] Merit bound_of_cells(const GridBox& box, const Interval& codes) const override;
+  [[nodiscard]] bool wants_all_cells() const override { return true; }
+  bool begin_cells(const GridBox& box, Merit left) override;
+  void take_cell(const LivingTriangle& t) override { take(t); }
+  Merit end_cells() override { return {cut_off()}; }
 
   void find_ends() override;
   void state_domain(SightEnd& end, Spot spot) const;
@@ -62,6 +69,7 @@ class SightStars final : public SightSearch, private BestStarVisitor {
   void look_at(const Part& part);
   void begin_search(Aim aim, Part part, LevelStars& stars);
   void search(Aim aim, Part part, LevelStars& stars);
+  [[nodiscard]] bool is_cut_here(Merit bound);
   void finish_search();
   void search_whole_line(Aim aim);
   void take(const LivingTriangle& t);

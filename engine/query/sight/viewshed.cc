@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/query/living/floor_tin.h"
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/select/region.h"
 #include "engine/query/shape/spot.h"
 #include "engine/query/sight/viewshed_sweep.h"
 
@@ -174,8 +176,14 @@ class ViewshedSearch {
     const double reach_x = request_.radius / request_.ground_per_map_x;
     const double reach_y = request_.radius / request_.ground_per_map_y;
     const MapPoint eye = request_.eye;
+    const Window around{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y};
+    if (const Floor* const floor = detail_.is_full() ? terrain_.floor() : nullptr) {
+      const StoreFacts& facts = store_.facts();
+      tin_ = floor_tin(*floor, facts.heights, GridRegion(around, facts.map).bounds(), context_);
+      return;
+    }
     RefineRequest wanted;
-    wanted.region = Window{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y};
+    wanted.region = around;
     wanted.limits = request_.limits;
     const PredicatePtr finer = is_coarse ? finer_towards_eye() : nullptr;
     wanted.also = finer.get();

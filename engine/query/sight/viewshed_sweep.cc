@@ -16,8 +16,10 @@ namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1;
+constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1 + sizeof(VertexId);
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
+constexpr double kInLine =
+    1e-14;  ///< Of products of doubles that a difference and a product round.
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
@@ -58,8 +60,11 @@ class Viewer {
   void place_pixels();
   void sweep();
   void walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& horizon);
+  [[nodiscard]] std::vector<VertexId> seen_vertices() const;
+  [[nodiscard]] int least_corner(TriangleId t) const noexcept;
   void collect();
-  [[nodiscard]] bool sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon);
+  [[nodiscard]] bool sees(const Offset& at, Spot spot, Horizon::Side side, const Offset& along,
+                          const Horizon& horizon);
   [[nodiscard]] std::size_t buckets() const noexcept {
     // The shortest edges are about a grid unit long, so four times the radius in grid units is what
     // Horizon advises. kMostBuckets keeps the horizon near 12 MiB, whatever the radius.
@@ -283,7 +288,8 @@ void Viewer::walk_to_others(const std::vector<std::uint8_t>& waits, Horizon& hor
   }
 }
 
-bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon& horizon) {
+bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Offset& along,
+                  const Horizon& horizon) {
   if (bias_.sign != 0 && walked_) {
     return bias_.sign < 0;  // the answer that leaves the target undecided: the walk knows no bias
   }
@@ -295,7 +301,7 @@ bool Viewer::sees(const Offset& at, Spot spot, Horizon::Side side, const Horizon
     const bool stands_out =
         bias_.sign <= 0 ||
         (request_.target_height >= 2 * unknown_at(p.x, p.y) && eye_.above_ground >= bias_.base);
-    return stands_out && horizon.sees(p, side);
+    return stands_out && horizon.sees(p, side, along);
   }
   ++result_.walked_targets;
   return walked_->sees(spot, p.z, eye_.triangle);
@@ -341,7 +347,7 @@ void Viewer::look_at(TriangleId t, Horizon& horizon) {
     const Approach approach = approach_corner(o, i);
     if (approach.from_within) {
       p.z += request_.target_height;
-      see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, horizon));
+      see(seen_[v], sees(p, spot_of(tin_.position(v)), approach.side, p, horizon));
     }
   }
   if (request_.pixels) {
@@ -424,22 +430,28 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
   }
   const auto o = offsets(t);
   double weights[3];
-  double sum = 0;
   Horizon::Side side = Horizon::Side::kBoth;
+  Offset along = p;
   for (int i = 0; i < 3; ++i) {
     const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
     const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
-    const double w = (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    const double left = (b.x - a.x) * (p.y - a.y);
+    const double right = (b.y - a.y) * (p.x - a.x);
     const double faces = turn(a, b);
+    // Along a side in line with the eye a centre that is off by its own rounding is on it: else the
+    // ground behind the centre, on the side's other hand, would hide it.
+    const bool is_in_line =
+        faces == 0 && std::abs(left - right) <= kInLine * (std::abs(left) + std::abs(right));
+    const double w = is_in_line ? 0.0 : left - right;
     if (w < 0 || (w == 0 && faces < 0)) {
       return;  // outside, or on a side that the ray reaches from beyond
     }
-    if (w == 0 && faces == 0) {
-      side = turn(p, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
-                                                         : Horizon::Side::kRight;
+    if (is_in_line) {
+      along = a.x * p.x + a.y * p.y > 0 ? a : b;  // the eye may lie between them
+      side = turn(along, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
+                                                             : Horizon::Side::kRight;
     }
     weights[i] = w;
-    sum += w;
   }
   if (!is_surface(t) && !holds_surface(tin_, t, weights)) {
     return;
@@ -449,20 +461,55 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     return;
   }
   // The height on the plane of the triangle without curvature, then lowered by the drop at the
-  // point itself.
-  for (std::size_t i = 0; i < 3; ++i) {
+  // point itself. The corner with the least key comes first, whatever mesh the triangle is of: where the
+  // eye is in the plane, the last digit of the sum decides.
+  const auto first = static_cast<std::size_t>(least_corner(t));
+  const std::array<std::size_t, 3> order{first, (first + 1) % 3, (first + 2) % 3};
+  const double sum = weights[order[0]] + weights[order[1]] + weights[order[2]];
+  for (const std::size_t i : order) {
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }
   p.z += request_.target_height - drop(p.x, p.y);
-  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, horizon));
+  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, along, horizon));
 }
 
-void Viewer::collect() {
+/// The vertices that were looked at, in the order of their keys: a mesh has them in that in which it was
+/// made.
+std::vector<VertexId> Viewer::seen_vertices() const {
+  std::vector<VertexId> seen;
   for (VertexId v = 0; v < seen_.size(); ++v) {
     if (v % kStopInterval == 0) {
       context_.check_stop();
     }
-    if (seen_[v] == Sight::kNothing || !touches_surface(tin_, v)) {
+    if (seen_[v] != Sight::kNothing) {
+      seen.push_back(v);
+    }
+  }
+  const auto is_before = [&](VertexId a, VertexId b) {
+    return key_of(tin_.position(a)) < key_of(tin_.position(b));
+  };
+  if (request_.list_vertices && !std::is_sorted(seen.begin(), seen.end(), is_before)) {
+    std::sort(seen.begin(), seen.end(), is_before);
+  }
+  return seen;
+}
+
+/// The corner of a triangle with the least key.
+int Viewer::least_corner(TriangleId t) const noexcept {
+  int least = 0;
+  for (const int i : {1, 2}) {
+    const auto& v = tin_.triangles[t].v;
+    if (key_of(tin_.position(v[i])) < key_of(tin_.position(v[least]))) least = i;
+  }
+  return least;
+}
+
+void Viewer::collect() {
+  for (const VertexId v : seen_vertices()) {
+    if (v % kStopInterval == 0) {
+      context_.check_stop();
+    }
+    if (!touches_surface(tin_, v)) {
       continue;
     }
     const Offset& o = offsets_[v];

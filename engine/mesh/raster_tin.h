@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/construct/tile/tile_tree.h"
 #include "engine/geometry/height.h"
 #include "engine/geometry/point.h"
+#include "engine/geometry/sample_range.h"
 #include "engine/mesh/raster_cell.h"
 #include "engine/mesh/tin.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/raster/raster_tin.h"
+#include "engine/mesh/raster_tin.h"
 
 #include <cmath>
 #include <cstring>

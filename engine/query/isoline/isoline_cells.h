@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Isolines through the cells of a raster, followed from cell to cell.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/geometry/height.h"
+#include "engine/mesh/raster_cell.h"
+#include "engine/query/living/raster_square.h"
+
+namespace ptin {
+
+/// The triangles of a square, each a bit, and lines that pass them with higher ground on the right.
+/// Threads: one owner.
+class CellLines {
+ public:
+  static constexpr std::uint32_t kMostSamples = 64;  ///< Across: a row of samples is 64 bits.
+  /// A sample.
+  struct Corner {
+    GridPoint position;
+    std::uint32_t height;  ///< Ordered.
+  };
+
+  /// Takes a square: all of its surface triangles are wanted.
+  /// @param square  Borrowed for the life of what is asked. Two to kMostSamples samples a side.
+  void take(const RasterSquare& square, const HeightEncoding& heights);
+
+  /// The least and the greatest height; least > greatest: all is void.
+  [[nodiscard]] std::uint32_t least() const noexcept { return least_; }
+  [[nodiscard]] std::uint32_t greatest() const noexcept { return greatest_; }
+
+  /// Leaves out the triangles for which wants(corner, corner, corner) is false.
+  template <class Wants>
+  void keep_if(const Wants& wants);
+
+  /// Looks which triangles a level crosses.
+  /// @param least_above  The least height that is above it.
+  /// @return How many.
+  std::size_t find_crossed(std::uint64_t least_above);
+  /// Follows that level's lines through them, once: begin(below, above) at the edge by which a line comes, and
+  /// extend(below, above) at each by which it leaves a triangle.
+  template <class Begin, class Extend>
+  void follow(const Begin& begin, const Extend& extend);
+  /// How many triangles the levels since take() have crossed.
+  [[nodiscard]] std::size_t crossed_once() const noexcept;
+
+ private:
+  using Row = std::uint64_t;  ///< A bit a sample, or a cell.
+  /// Of a row of cells: those of their first triangles, at the lower edge, and of their second ones.
+  using Pair = std::array<Row, 2>;
+
+  /// A triangle that a line enters: its cell, which of its two it is, and which of the cell's corners, counted
+  /// as RasterCell's, are the ends of the edge.
+  struct At {
+    std::uint32_t x, y, triangle, below, above;
+  };
+  [[nodiscard]] bool is_falling(std::uint32_t x, std::uint32_t y) const noexcept {
+    return (falling_[y] >> x & 1) != 0;
+  }
+  [[nodiscard]] Corner corner(const At& at, std::uint32_t number) const noexcept;
+  [[nodiscard]] const std::array<std::uint8_t, 3>& triangle_of(const At& at) const noexcept {
+    return kCells[is_falling(at.x, at.y) ? 1 : 0][at.triangle];
+  }
+  /// The triangle at (x, y) with the edge by which a line of the level enters it.
+  [[nodiscard]] At entered(std::uint32_t x, std::uint32_t y, std::uint32_t triangle) const noexcept;
+  /// Goes through a triangle: `at.below` and `at.above` become the ends of the edge by which the line leaves.
+  void pass(At& at) const noexcept;
+  /// Goes over that edge. False where the square ends.
+  [[nodiscard]] bool enter_next(At& at) const noexcept;
+  [[nodiscard]] bool is_above(std::uint32_t x, std::uint32_t y,
+                              std::uint32_t number) const noexcept {
+    return (above_[y + (number >> 1)] >> (x + (number == 1 || number == 2 ? 1 : 0)) & 1) != 0;
+  }
+  void find_diagonals(const HeightEncoding& heights);
+  void find_surface();
+
+  static constexpr std::array<CellTriangles, 2> kCells{cell_triangles(Diagonal::kRising),
+                                                       cell_triangles(Diagonal::kFalling)};
+
+  RasterSquare square_;
+  std::uint32_t least_ = UINT32_MAX, greatest_ = 0;
+  std::array<Row, kMostSamples> above_{}, has_height_{}, falling_{};
+  std::array<Pair, kMostSamples> wanted_{}, crossed_{}, crossed_once_{};
+};
+
+template <class Wants>
+void CellLines::keep_if(const Wants& wants) {
+  for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
+    for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
+      for (Row left = wanted_[y][triangle]; left != 0; left &= left - 1) {
+        const At at{static_cast<std::uint32_t>(std::countr_zero(left)), y, triangle, 0, 0};
+        const auto& [a, b, c] = triangle_of(at);
+        if (!wants(corner(at, a).position, corner(at, b).position, corner(at, c).position)) {
+          wanted_[y][triangle] &= ~(Row{1} << at.x);
+        }
+      }
+    }
+  }
+}
+
+template <class Begin, class Extend>
+void CellLines::follow(const Begin& begin, const Extend& extend) {
+  for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
+    for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
+      while (crossed_[y][triangle] != 0) {
+        At at = entered(static_cast<std::uint32_t>(std::countr_zero(crossed_[y][triangle])), y,
+                        triangle);
+        begin(corner(at, at.below), corner(at, at.above));
+        do {
+          crossed_[at.y][at.triangle] &= ~(Row{1} << at.x);
+          pass(at);
+          extend(corner(at, at.below), corner(at, at.above));
+        } while (enter_next(at) && (crossed_[at.y][at.triangle] >> at.x & 1) != 0);
+      }
+    }
+  }
+}
+
+}  // namespace ptin
