@@ -39,6 +39,7 @@ set(public_headers
     engine/geometry/interval.h
     engine/geometry/orient.h
     engine/geometry/point.h
+    engine/geometry/sample_range.h
     engine/growing_array.h
     engine/large_array.h
     engine/memory_units.h
@@ -145,6 +146,7 @@ set(program_headers
     engine/query/shape/tiler.h
     storage/file/file_questions.h
     storage/file_beginning.h
+    storage/floor.h
     storage/index_shape.h
     storage/spatialindex_rtree.h)
 if(WITH_MPI)

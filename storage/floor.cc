@@ -87,9 +87,9 @@ Floor::Found Floor::root() const noexcept {
   return {0, UINT64_MAX, {0, 0, 0, place_.root_checksum}, 0};
 }
 
-Floor::Found Floor::find(std::uint64_t key, std::size_t level, IoCounters& counters) const {
+Floor::Found Floor::find(std::uint64_t key, std::size_t depth, IoCounters& counters) const {
   Found found = root();
-  while (found.level < level) {
+  while (found.level < depth) {
     const layout::FloorNode here = node(found, counters);
     const auto end = here.entry.begin() + here.entries;
     const auto after =
@@ -105,11 +105,11 @@ Floor::Found Floor::find(std::uint64_t key, std::size_t level, IoCounters& count
 
 void Floor::announce(std::span<const std::uint64_t> keys, IoCounters& counters) const {
   if (!is_far()) return;
-  std::vector<Found> found;
-  for (std::size_t level = 1; level <= tree_.levels(); ++level) {
-    found.clear();
+  IoCounters counted_when_read;
+  for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) {
+    std::vector<Found> found;
     for (auto key = keys.begin(); key != keys.end();) {
-      found.push_back(find(*key, level, counters));
+      found.push_back(find(*key, depth, counted_when_read));
       key = std::lower_bound(key, keys.end(), found.back().end);
     }
     announce(found, counters);

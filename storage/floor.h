@@ -146,8 +146,8 @@ class Floor {
   [[nodiscard]] layout::FloorNode node(const Found& found, IoCounters& counters) const;
   using Bound = std::function<Merit(const Bounds&)>;
   [[nodiscard]] Found root() const noexcept;
-  /// What holds a key on a level: a node, or a page.
-  [[nodiscard]] Found find(std::uint64_t key, std::size_t level, IoCounters& counters) const;
+  /// The page that holds a key; the node above it, `depth` levels below the root, where that is less deep.
+  [[nodiscard]] Found find(std::uint64_t key, std::size_t depth, IoCounters& counters) const;
   /// What of a node's entries is not below the cut-off, along the curve.
   void expand(const Found& node, const Bound& bound, Merit cut_off, std::vector<Found>& below,
               IoCounters& counters) const;

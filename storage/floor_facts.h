@@ -36,9 +36,11 @@ struct FloorFacts {
   /// floats in their order. Of int32 it is 0, and tiles hold the codes.
   double step = 0.0;
   SourceNumber source = SourceNumber::kUnknown;
-  /// The number that void samples have in the source; none: NaN, a mask, or several of them.
+  /// The nodata value in force, which may be NaN. Void samples of an exact source have it, or where there
+  /// is none the usual NaN.
   std::optional<double> nodata;
-  /// The source's numbers come back bit for bit.
+  /// The source's numbers come back bit for bit: those of integers of at most 32 bits with a sign are
+  /// codes, all others heights.
   bool is_exact = false;
 };
 

@@ -349,7 +349,8 @@ void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, cons
   job.report.lone_samples = built.lone_samples;
   job.tell(StageProgress{"writing", 0, 1});
   if (source.add_floor) {
-    store.add_floor([&](StoreWriter& writer) { source.add_floor(writer, job.resources.stop); });
+    store.add_floor(
+        [&](StoreWriter& writer) { return source.add_floor(writer, job.resources.stop); });
   }
   require_unchanged(job);  // the heights are read once more, and have to be those of the records
   const std::uint64_t inode = inode_of(pages_file_in(workspace.folder())).value_or(0);

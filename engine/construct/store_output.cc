@@ -62,6 +62,16 @@ nlohmann::json source_json(const std::vector<std::string>& inputs, const BuildRe
   return source;
 }
 
+/// What of a raster stands nowhere else in the file.
+nlohmann::json raster_json(const KeptRaster& raster) {
+  nlohmann::json json{{"geotransform", nullptr},
+                      {"pixels", raster.is_point ? "points" : "areas"},
+                      {"lost", nullptr}};
+  if (raster.geotransform) json["geotransform"] = *raster.geotransform;
+  if (!raster.lost.empty()) json["lost"] = raster.lost;
+  return json;
+}
+
 }  // namespace
 
 CoarsestTin coarsest_tin(const Tin& tin) {
@@ -189,9 +199,9 @@ void StoreOutput::resume(const nlohmann::json& position) {
   base_deviation_ = std::bit_cast<double>(position.at("base_deviation").get<std::uint64_t>());
 }
 
-void StoreOutput::add_floor(const std::function<void(StoreWriter&)>& add) {
+void StoreOutput::add_floor(const std::function<KeptRaster(StoreWriter&)>& add) {
   if (base_error_ == 0.0) {
-    add(*writer_);
+    raster_ = add(*writer_);
   }
 }
 
@@ -218,12 +228,14 @@ void StoreOutput::publish(const Tin& t0, std::span<const float> t0_deaths,
   if (nlohmann::json told = json_of(crs_facts(frame_.crs_wkt)); !told.is_null()) {
     crs["facts"] = std::move(told);
   }
+  nlohmann::json source = source_json(inputs, report);
+  if (raster_) source["raster"] = raster_json(*raster_);
   const nlohmann::json metadata{
       {"crs", std::move(crs)},
       {"units", {{"horizontal", frame_.horizontal_unit}, {"height", frame_.vertical_unit}}},
       {"height_quantum", frame_.height_quantum},
       {"options", options_json(options_)},
-      {"source", source_json(inputs, report)}};
+      {"source", std::move(source)}};
   writer_->publish(facts, coarsest,
                    metadata.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   const StoreCheckpoint end = writer_->position();

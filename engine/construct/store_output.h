@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/construct/build.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/raster/raster_kept.h"
 #include "engine/construct/stored_detail.h"
 #include "engine/construct/tile_tasks/segment_output.h"
 #include "engine/mesh/tin.h"
@@ -58,8 +60,9 @@ class StoreOutput final : public SegmentOutput {
   void resume(const nlohmann::json& position) override;
 
   /// Has the samples of a raster added, where each of them is a vertex of the file with its own height.
+  /// @param add  Tells what is kept of the raster, for the metadata.
   /// @throws Error as StoreWriter::add_floor
-  void add_floor(const std::function<void(StoreWriter&)>& add);
+  void add_floor(const std::function<KeptRaster(StoreWriter&)>& add);
 
   /// @param t0       The coarsest TIN: the alive part of a mesh in which nothing more collapses.
   /// @param t0_deaths  One for each of t0.triangles, as deaths_of().
@@ -78,7 +81,8 @@ class StoreOutput final : public SegmentOutput {
   StorePacker packer_;
   double base_error_ = 0.0;
   double base_deviation_ = 0.0;
-  std::uint64_t void_records_ = 0;  ///< Records that make a void triangle or vertex.
+  std::uint64_t void_records_ = 0;    ///< Records that make a void triangle or vertex.
+  std::optional<KeptRaster> raster_;  ///< Whose samples the file has.
 };
 
 /// The alive part of a mesh as the store keeps it, in the order of the vertices.

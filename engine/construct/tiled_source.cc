@@ -26,7 +26,7 @@ TiledSource tiled(const RasterSource& source, const BuildOptions& options) {
     };
   };
   const auto add_floor = [&source](StoreWriter& writer, const std::stop_token& stop) {
-    add_raster_floor(source, writer, stop);
+    return add_raster_floor(source, writer, stop);
   };
   return {source.frame(), units, TileTree(source.width(), source.height(), side), make_starter,
           add_floor};

@@ -33,7 +33,7 @@ struct TiledSource {
   TileTree tree;
   std::function<LeafStarter()> make_starter;  ///< Called once for each task that runs at once.
   /// Gives the samples of a raster to the file; empty: the source is none.
-  std::function<void(StoreWriter&, const std::stop_token&)> add_floor = {};
+  std::function<KeptRaster(StoreWriter&, const std::stop_token&)> add_floor = {};
 };
 
 /// @param source  Must outlive the result.

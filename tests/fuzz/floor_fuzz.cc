@@ -28,6 +28,7 @@
 namespace {
 
 using namespace ptin;
+using fuzz::require;
 
 constexpr std::uint64_t kMostPages = 400;  // two levels of nodes
 
@@ -76,10 +77,6 @@ Sections made(const std::byte* data, std::size_t size, std::uint64_t pages, bool
     below = std::move(here);
   }
   return s;
-}
-
-void require(bool holds) {
-  if (!holds) std::abort();
 }
 
 bool is_void(const FloorTile& tile, std::size_t i) {

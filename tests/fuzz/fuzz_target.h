@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -17,6 +18,11 @@ using Target = int (*)(const std::uint8_t* data, std::size_t size);
 inline std::map<std::string, Target>& targets() {
   static std::map<std::string, Target> all;
   return all;
+}
+
+/// Ends the process where something does not hold: a finding.
+inline void require(bool holds) {
+  if (!holds) std::abort();
 }
 
 struct Registered {

@@ -24,14 +24,9 @@
 namespace {
 
 using namespace ptin;
+using fuzz::require;
 
 constexpr std::uint32_t kPageBytes = 4096;
-
-void require(bool condition) {
-  if (!condition) {
-    std::abort();
-  }
-}
 
 class Everything final : public AttributePredicate {
  public:

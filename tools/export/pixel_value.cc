@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace ptin::tools {
@@ -23,11 +24,14 @@ GDALDataType type_of_pixels(const StoreFacts& facts, PixelValue value) {
   return fits ? GDT_Float32 : GDT_Float64;
 }
 
-double default_nodata(const StoreFacts& facts, PixelValue value) noexcept {
+double default_nodata(const StoreFacts& facts, PixelValue value,
+                      std::optional<GDALDataType> type) noexcept {
   constexpr double kUsual = -9999.0;
   if (value == PixelValue::kHillshade) return 0.0;
   if (value != PixelValue::kHeight || !(facts.min_height <= kUsual && kUsual <= facts.max_height))
     return kUsual;
+  if (type == GDT_Int16) return std::numeric_limits<std::int16_t>::lowest();
+  if (type == GDT_Int32) return std::numeric_limits<std::int32_t>::lowest();
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 

@@ -2,82 +2,24 @@
 #include "tools/export/raster_export.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
-#include <memory>
+#include <limits>
 #include <optional>
+#include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include <cpl_string.h>
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
-
-#include "engine/construct/memory_plan.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "engine/memory_units.h"
-#include "engine/stop.h"
 #include "tools/export/pixel_grid.h"
-#include "tools/formats/geotiff_crs.h"
-#include "tools/output/gdal_output.h"
-#include "tools/output/pending_file.h"
 
 namespace ptin::tools {
 
 namespace {
-
-constexpr const char* kBlockSide = "512";
-
-CPLStringList options_of(const RasterTarget& target, bool for_copy) {
-  CPLStringList options;
-  if (target.is_cog == for_copy) {
-    for (const std::string& option : target.creation_options) options.AddString(option.c_str());
-  }
-  const auto set = [&](const char* key, const char* value) {
-    if (options.FetchNameValue(key) == nullptr) options.SetNameValue(key, value);
-  };
-  set("COMPRESS", "DEFLATE");
-  set("BIGTIFF", "IF_SAFER");
-  if (for_copy) {
-    set("PREDICTOR", "YES");
-    // The mean of 359 and 1 degrees is no direction between them.
-    const bool is_aspect = target.content.value == PixelValue::kAspect;
-    set("OVERVIEW_RESAMPLING", is_aspect ? "NEAREST" : "AVERAGE");
-    return options;
-  }
-  set("TILED", "YES");
-  if (options.FetchBool("TILED", true)) {
-    set("BLOCKXSIZE", kBlockSide);
-    set("BLOCKYSIZE", kBlockSide);
-  }
-  const std::string compression = options.FetchNameValueDef("COMPRESS", "");
-  if (compression == "DEFLATE" || compression == "LZW" || compression == "ZSTD")
-    set("PREDICTOR", target.content.value == PixelValue::kHillshade ? "2" : "3");
-  return options;
-}
-
-/// Checks that the table of blocks fits its memory: GDAL keeps the place and the size of every
-/// block in memory. For a COG it keeps those of the raster that is copied and of the overviews
-/// besides.
-void check_table(const PixelRect& raster, const RasterTarget& target) {
-  const std::int64_t side = std::stoi(kBlockSide);
-  const auto across = [&](std::int64_t pixels) {
-    return static_cast<std::uint64_t>((pixels + side - 1) / side);
-  };
-  constexpr std::uint64_t kBytes = 2 * sizeof(std::uint64_t);
-  const std::uint64_t copies = target.is_cog ? 3 : 1;
-  const std::uint64_t table = copies * kBytes * across(raster.width) * across(raster.height);
-  if (table <= target.table_bytes) return;
-  throw Error(ErrorCode::resource_exhausted,
-              "a raster of " + std::to_string(raster.width) + " x " +
-                  std::to_string(raster.height) + " pixels takes " + std::to_string(table >> 20) +
-                  " MiB of memory for the table of its blocks, and " +
-                  std::to_string(target.table_bytes >> 20) +
-                  " MiB are there for it; give a larger --pixel-size, a --window or more --memory",
-              target.path);
-}
 
 /// Checks that a block fits the memory of the question, which samples whole blocks.
 void check_block(const RasterRequest& request, const RasterTarget& target) {
@@ -95,21 +37,36 @@ void check_block(const RasterRequest& request, const RasterTarget& target) {
               target.path);
 }
 
-/// Fills a dataset block by block.
+/// Numbers of a type of pixels; heights between them are rounded to the nearest, halves away from 0.
+template <class T>
+struct Rounding {
+  static constexpr double kLow = static_cast<double>(std::numeric_limits<T>::lowest());
+  static constexpr double kHigh = static_cast<double>(std::numeric_limits<T>::max());
+  [[nodiscard]] static bool holds(double height) noexcept {
+    return std::is_floating_point_v<T> || (height > kLow - 0.5 && height < kHigh + 0.5);
+  }
+  [[nodiscard]] static T of(double height) noexcept {
+    if constexpr (std::is_floating_point_v<T>) return static_cast<T>(height);
+    return static_cast<T>(height + (height < 0 ? -0.5 : 0.5));
+  }
+};
+
+/// Fills a raster block by block.
 class RasterWriter {
  public:
   /// @param request  What is not asked for yet is set.
   /// @throws Error resource_exhausted  a block does not fit the memory
   RasterWriter(const Terrain& terrain, RasterRequest request, const RasterTarget& target,
-               GDALDataset& dataset)
+               RasterFile& file)
       : terrain_(terrain),
         request_(std::move(request)),
         target_(target),
-        band_(*dataset.GetRasterBand(1)),
+        file_(file),
+        type_(file.band().GetRasterDataType()),
         per_map_unit_(ground_of(target.crs).per_map_unit) {
     int width = 0;
     int height = 0;
-    band_.GetBlockSize(&width, &height);
+    file.band().GetBlockSize(&width, &height);
     request_.block_width = width;
     request_.block_height = height;
     request_.heights = of_heights();
@@ -127,46 +84,71 @@ class RasterWriter {
   [[nodiscard]] bool of_heights() const { return target_.content.value == PixelValue::kHeight; }
 
   void write(const RasterBlock& block) {
-    if (band_.GetRasterDataType() == GDT_Float64) {
-      write_as<double>(block);
-    } else if (band_.GetRasterDataType() == GDT_Byte) {
-      write_as<std::uint8_t>(block);
-    } else {
-      write_as<float>(block);
-    }
+    if (type_ == GDT_Float64) return write_as<double>(block);
+    if (type_ == GDT_Byte) return write_as<std::uint8_t>(block);
+    if (type_ == GDT_Int16) return write_as<std::int16_t>(block);
+    if (type_ == GDT_Int32) return write_as<std::int32_t>(block);
+    write_as<float>(block);
   }
 
   template <typename T>
   void write_as(const RasterBlock& block) {
     const PixelRect& pixels = block.pixels;
-    std::vector<T> values(static_cast<std::size_t>(request_.block_width * request_.block_height),
-                          static_cast<T>(target_.nodata));
+    const auto width = static_cast<std::size_t>(request_.block_width);
+    const auto nodata = static_cast<T>(target_.nodata);
+    bytes_.resize(width * static_cast<std::size_t>(request_.block_height) * sizeof(T));
+    const std::span<T> values(reinterpret_cast<T*>(bytes_.data()), bytes_.size() / sizeof(T));
+    if (pixels.width < request_.block_width || pixels.height < request_.block_height) {
+      std::fill(values.begin(), values.end(), nodata);
+    }
     for (std::int64_t y = 0; y < pixels.height; ++y) {
-      for (std::int64_t x = 0; x < pixels.width; ++x) {
-        const std::size_t from =
-            static_cast<std::size_t>(y) * block.stride + static_cast<std::size_t>(x);
-        const std::optional<double> value =
-            of_heights() ? height_of(block.heights[from])
-                         : value_of(block.normals[from], pixels.column + x, pixels.row + y);
-        if (!value) continue;
-        T& written = values[static_cast<std::size_t>(y * request_.block_width + x)];
-        written = static_cast<T>(*value);
-        // Exact: the two numbers are nearly the same.
-        rounding_ = std::max(rounding_,
-                             of_heights() ? std::abs(static_cast<double>(written) - *value) : 0.0);
+      const std::size_t from = static_cast<std::size_t>(y) * block.stride;
+      const auto to = values.subspan(static_cast<std::size_t>(y) * width,
+                                     static_cast<std::size_t>(pixels.width));
+      if (of_heights()) {
+        take_heights<T>({block.heights + from, to.size()}, nodata, to);
+        continue;
+      }
+      for (std::size_t x = 0; x < to.size(); ++x) {
+        const auto value = value_of(block.normals[from + x],
+                                    pixels.column + static_cast<std::int64_t>(x), pixels.row + y);
+        to[x] = value ? static_cast<T>(*value) : nodata;
       }
     }
-    CPLErrorReset();
-    if (band_.WriteBlock(
-            static_cast<int>((pixels.column - request_.pixels.column) / request_.block_width),
-            static_cast<int>((pixels.row - request_.pixels.row) / request_.block_height),
-            values.data()) != CE_None) {
-      throw gdal_failure("cannot write the raster", target_.path);
-    }
+    file_.write_block(
+        static_cast<int>((pixels.column - request_.pixels.column) / request_.block_width),
+        static_cast<int>((pixels.row - request_.pixels.row) / request_.block_height),
+        values.data());
   }
 
-  static std::optional<double> height_of(double height) {
-    return std::isnan(height) ? std::nullopt : std::optional(height);
+  /// Rounds a row of heights to the type of the pixels.
+  template <class T>
+  void take_heights(std::span<const double> heights, T nodata, std::span<T> to) {
+    double rounding = rounding_;
+    bool fits = true;
+    for (std::size_t x = 0; x < to.size(); ++x) {
+      const double height = heights[x];
+      const bool is_height = height == height;
+      const bool holds = is_height && Rounding<T>::holds(height);
+      fits = fits && (holds || !is_height);
+      const T rounded = holds ? Rounding<T>::of(height) : nodata;
+      // Exact: the two numbers are nearly the same.
+      const double off = holds ? std::abs(static_cast<double>(rounded) - height) : 0.0;
+      rounding = off > rounding ? off : rounding;
+      to[x] = rounded;
+    }
+    rounding_ = rounding;
+    if (!fits) refuse_type(heights);
+  }
+  [[noreturn]] void refuse_type(std::span<const double> heights) const {
+    const auto off = std::find_if(heights.begin(), heights.end(), [&](double h) {
+      return h == h && !(type_ == GDT_Int16 ? Rounding<std::int16_t>::holds(h)
+                                            : Rounding<std::int32_t>::holds(h));
+    });
+    throw Error(ErrorCode::invalid_argument,
+                "a height of " + std::to_string(*off) + " does not fit " +
+                    GDALGetDataTypeName(type_) + "; leave --type out, or give one that holds it",
+                target_.path);
   }
 
   [[nodiscard]] std::optional<double> value_of(const GridNormal& normal, std::int64_t column,
@@ -178,101 +160,32 @@ class RasterWriter {
   const Terrain& terrain_;
   RasterRequest request_;
   const RasterTarget& target_;
-  GDALRasterBand& band_;
+  RasterFile& file_;
+  const GDALDataType type_;
   std::function<MapPoint(MapPoint)> per_map_unit_;
   double rounding_ = 0.0;
+  std::vector<std::byte> bytes_;  ///< Of the values of a block.
 };
-
-/// Refuses options that the driver does not know; GDAL itself only warns of them.
-void check_creation_options(GDALDriver* driver, const CPLStringList& options,
-                            const std::string& path) {
-  CPLErrorReset();
-  if (GDALValidateCreationOptions(driver, const_cast<char**>(options.List())) == FALSE) {
-    throw Error(ErrorCode::invalid_argument,
-                std::string("a --co is refused: ").append(CPLGetLastErrorMsg()), path);
-  }
-}
-
-GDALDatasetUniquePtr create(const PendingFile& file, const RasterRequest& request,
-                            const RasterTarget& target, const StoreFacts& facts) {
-  GDALDriver& driver = driver_named("GTiff");
-  const CPLStringList options = options_of(target, false);
-  check_creation_options(&driver, options, target.path);
-  CPLErrorReset();
-  GDALDatasetUniquePtr dataset(driver.Create(
-      file.temporary().c_str(), static_cast<int>(request.pixels.width),
-      static_cast<int>(request.pixels.height), 1, type_of_pixels(facts, target.content.value),
-      const_cast<char**>(options.List())));
-  if (!dataset) throw gdal_failure("cannot create the raster", target.path);
-  auto transform = geotransform_of(request);
-  require_done(dataset->SetGeoTransform(transform.data()), "cannot place the raster", target.path);
-  set_geotiff_crs(*dataset, target.crs.wkt, target.content.value == PixelValue::kHeight,
-                  target.path);
-  GDALRasterBand* band = dataset->GetRasterBand(1);
-  require_done(band->SetNoDataValue(target.nodata), "cannot set the nodata value", target.path);
-  const std::string unit = unit_of_pixels(target.content, target.crs);
-  if (!unit.empty()) band->SetUnitType(unit.c_str());
-  return dataset;
-}
-
-/// Closes a dataset, and throws when its last writes failed: GDALClose() has no result in this
-/// GDAL.
-void close_checked(GDALDatasetUniquePtr& dataset, const std::string& path) {
-  CPLErrorReset();
-  GDALClose(dataset.release());
-  if (CPLGetLastErrorType() >= CE_Failure) throw gdal_failure("cannot finish the raster", path);
-}
-
-struct CopyProgress {
-  const std::function<void(double)>& report;
-  const std::stop_token& stop;
-  static int tell(double done, const char* /*message*/, void* self) {
-    const auto& me = *static_cast<const CopyProgress*>(self);
-    if (me.report) me.report(0.5 + done / 2);
-    return me.stop.stop_requested() ? FALSE : TRUE;
-  }
-};
-
-void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterTarget& target,
-                 CopyProgress& progress) {
-  GDALDriver& driver = driver_named("COG");
-  CPLErrorReset();
-  const GDALDatasetUniquePtr source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
-  if (!source) throw gdal_failure("cannot read the raster back", target.path);
-  const CPLStringList options = options_of(target, true);
-  check_creation_options(&driver, options, target.path);
-  GDALDatasetUniquePtr copy(driver.CreateCopy(file.temporary().c_str(), source.get(), FALSE,
-                                              const_cast<char**>(options.List()),
-                                              &CopyProgress::tell, &progress));
-  stop_if_asked(progress.stop, "the export", target.path);
-  if (!copy || CPLGetLastErrorType() >= CE_Failure)
-    throw gdal_failure("cannot write the COG", target.path);
-  close_checked(copy, target.path);
-}
 
 }  // namespace
 
 WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
                             const RasterTarget& target,
                             const std::function<void(double)>& progress) {
-  check_table(request.pixels, target);
-  const GdalCacheLimit cache(target.cache_bytes);
-  PendingFile file(target.path, target.overwrite);
-  std::optional<PendingFile> raw;  // what a COG is copied from
-  if (target.is_cog) raw.emplace(target.path + ".raw.tif", true);
+  RasterForm form;
+  form.width = request.pixels.width;
+  form.height = request.pixels.height;
+  form.type = target.type.value_or(type_of_pixels(terrain.store().facts(), target.content.value));
+  form.geotransform = geotransform_of(request);
+  form.nodata = target.nodata;
+  form.unit = unit_of_pixels(target.content, target.crs);
+  RasterFile file(target, form);
   const double share = target.is_cog ? 0.5 : 1.0;
   request.progress = [&](double done) {
     if (progress) progress(done * share);
   };
-  GDALDatasetUniquePtr dataset =
-      create(raw ? *raw : file, request, target, terrain.store().facts());
-  const WrittenRaster written = RasterWriter(terrain, request, target, *dataset).run();
-  close_checked(dataset, target.path);
-  if (raw) {
-    CopyProgress copying{progress, request.limits.stop};
-    copy_as_cog(*raw, file, target, copying);
-  }
-  file.publish();
+  const WrittenRaster written = RasterWriter(terrain, request, target, file).run();
+  file.publish(progress, request.limits.stop);
   return written;
 }
 

@@ -5,27 +5,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <vector>
 
-#include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
-#include "tools/export/pixel_value.h"
+#include "tools/export/raster_file.h"
 
 namespace ptin::tools {
-
-struct RasterTarget {
-  std::string path;
-  bool overwrite = false;
-  bool is_cog = false;
-  PixelContent content;
-  double nodata = -9999.0;
-  std::vector<std::string> creation_options;  ///< KEY=VALUE for the driver; they override ours.
-  CrsFacts crs;
-  /// For GDAL's cache.
-  std::uint64_t cache_bytes = std::uint64_t{64} << 20;
-  std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
-};
 
 /// What was written.
 struct WrittenRaster {

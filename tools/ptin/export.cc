@@ -17,6 +17,7 @@
 #include "tools/error_status.h"
 #include "tools/export/pixel_grid.h"
 #include "tools/export/raster_export.h"
+#include "tools/export/source_export.h"
 #include "tools/export/tin_sink.h"
 #include "tools/facts/answers.h"
 #include "tools/output/file_name.h"
@@ -39,7 +40,9 @@ struct ExportOptions {
   ask::RegionText region;
   DetailRequest detail;
   ModelOptions model;
+  bool source = false;
   std::vector<std::string> pixel_size;
+  std::string type;
   PixelContentOptions content;
   std::optional<double> nodata;
   std::vector<std::string> creation_options;
@@ -135,6 +138,22 @@ PixelContent content_of(const ExportOptions& options, const ExportFormat& format
   return pixel_content_of(options.content, format.make_sink == nullptr, is_layer);
 }
 
+/// Refuses what --source leaves no choice of.
+void check_source(const ExportOptions& options, bool is_raster) {
+  if (!options.source) return;
+  if (!is_raster) refuse("is for rasters: name the output .tif", "--source");
+  const bool has_choice = options.region.given() || options.detail.tolerance ||
+                          options.detail.vertices || !options.pixel_size.empty() ||
+                          options.content.what != "height" || options.nodata ||
+                          !options.type.empty();
+  if (has_choice) {
+    refuse(
+        "writes the whole raster as it was: leave the region, the level of detail, --pixel-size, "
+        "--what, --type and --nodata out",
+        "--source");
+  }
+}
+
 void check_options(const ExportOptions& options, const ExportFormat& format) {
   static_cast<void>(pixel_sides_of(options.pixel_size));
   const bool is_raster = format.make_sink == nullptr;
@@ -148,6 +167,10 @@ void check_options(const ExportOptions& options, const ExportFormat& format) {
     throw Error(ErrorCode::invalid_argument,
                 "is for heights; slopes and aspects have -9999 as nodata, hillshades 0",
                 "--nodata");
+  }
+  check_source(options, is_raster);
+  if (!options.type.empty() && (!is_raster || content.value != PixelValue::kHeight)) {
+    throw Error(ErrorCode::invalid_argument, "is for rasters of heights (.tif)", "--type");
   }
   if (is_raster && !options.region.polygon.empty()) {
     throw Error(ErrorCode::invalid_argument,
@@ -278,15 +301,18 @@ RasterTarget raster_target(const ExportFormat& format, const ExportOptions& opti
                            const StoreFile& store) {
   const ExportMemory memory = memory_of(options);
   const PixelContent content = content_of(options, format);
+  std::optional<GDALDataType> type;
+  if (!options.type.empty()) type = GDALGetDataTypeByName(options.type.c_str());
   return {options.out.output,
           options.out.overwrite,
           format.is_cog,
           content,
-          options.nodata.value_or(default_nodata(store.facts(), content.value)),
+          options.nodata.value_or(default_nodata(store.facts(), content.value, type)),
           options.creation_options,
           crs_facts(store),
           memory.buffers,
-          memory.index};
+          memory.index,
+          type};
 }
 
 Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,
@@ -339,12 +365,41 @@ Exported export_as(const ExportFormat& format, const ExportOptions& options, con
   return made;
 }
 
+/// Writes the source raster.
+Exported export_source_as(const ExportFormat& format, const ExportOptions& options,
+                          const Terrain& terrain, const Context& context) {
+  const RasterTarget target = raster_target(format, options, terrain.store());
+  const SourceRaster source = source_raster_of(terrain, target.crs);
+  Progress progress(Progress::style_for(context.quiet, stderr));
+  export_source(
+      terrain, source, target,
+      [&](double done) {
+        progress.report("exporting", static_cast<std::uint64_t>(done * 10'000.0), 10'000);
+      },
+      context.stop);
+  progress.finish();
+  const StoreFacts& facts = terrain.store().facts();
+  Exported made;
+  made.output = options.out.output;
+  made.format = format.name;
+  made.is_raster = made.is_source = true;
+  made.columns = source.form.width;
+  made.rows = source.form.height;
+  made.pixel_size = {facts.map.step_x, facts.map.step_y};
+  made.surface_pixels = facts.source_samples;
+  made.certificate = certify_below(terrain.store(), -1.0);
+  made.changes.emplace();
+  made.bytes = bytes_of_file(options.out.output);
+  return made;
+}
+
 int run_export(const ExportOptions& options, const Context& context) {
   const ExportFormat& format = format_of(options);
   check_options(options, format);
   const auto start = std::chrono::steady_clock::now();
   const Terrain terrain = open_terrain(options.terrain, options.detail.tolerance, context);
-  Exported made = export_as(format, options, terrain, context);
+  Exported made = options.source ? export_source_as(format, options, terrain, context)
+                                 : export_as(format, options, terrain, context);
   made.seconds = seconds_since(start);
   if (context.json) {
     print_json_of(made, terrain.store());
@@ -364,12 +419,20 @@ void add_question(ask::Parameters& rows, ExportOptions& options) {
   rows.add("format", &options.format, "NAME",
            "The format: " + known_formats() + " (default: by the extension)")
       .spelled("--format,--of");
+  rows.add("source", &options.source, "",
+           "Rasters: the raster that the terrain was built from, bit for bit, lone samples too; "
+           "refused where something of it was not kept");
   rows.add("pixel-size", &options.pixel_size, "SIZE",
            "Rasters: the size of a pixel, one number or two, in map units, or over ground as 90m, "
            "0.1km or 300ft, converted at the middle of the window (default: the source raster's)")
       .values(1, 2);
   add_pixel_content(rows, options.content);
   add_model(rows, options.model);
+  rows.add(
+          "type", &options.type, "TYPE",
+          "Rasters of heights: the type of pixels, to which heights are rounded (default: Float32, "
+          "or Float64 where that does not hold the heights of vertices)")
+      .of({"Int16", "Int32", "Float32", "Float64"});
   rows.add("nodata", &options.nodata, "V",
            "Rasters of heights: the value where there is no surface (default -9999)")
       .within(NumberRange::kAny);

@@ -35,6 +35,7 @@ const char* left_out_text(bool has_moved, bool has_lone) {
 
 /// "within 2 at every sample, 3.1 at any point", "slope of the full TIN".
 std::string certainty_text(const Exported& made, const std::string& left_out) {
+  if (made.is_source) return "the source raster bit for bit";
   const bool is_height = made.what == "height";
   const Certificate& certificate = made.certificate;
   if (!is_height && certificate.error == 0 && certificate.deviation == 0)
@@ -99,7 +100,7 @@ ask::Fields<Exported> exported_fields() {
              of_changes(&ClassChanges::to_surface));
   fields.add("lone_samples", "integer", "",
              "Of the whole source, as `build` counted them: they are void, and no certificate "
-             "speaks of them.",
+             "speaks of them. 0 with `--source`.",
              &Row::lone_samples);
   return fields;
 }

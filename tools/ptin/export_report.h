@@ -19,6 +19,7 @@ namespace ptin::tools {
 struct Exported {
   std::string output, format;
   bool is_raster = false;
+  bool is_source = false;       ///< The source raster itself.
   std::string what = "height";  ///< What a raster's pixels say.
   std::string slope_unit;       ///< "degree" or "percent"; of slopes alone.
   std::uint64_t vertices = 0, triangles = 0, cells = 0;

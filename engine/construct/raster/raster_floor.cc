@@ -35,8 +35,14 @@ enum class Outcome : std::uint8_t { kDone, kTileTooLarge, kHeightsOfNoStep };
 
 class FloorTiles {
  public:
-  FloorTiles(const RasterSource& source, const FloorFacts& facts, const std::stop_token& stop)
-      : source_(source), facts_(facts), numbers_(source.frame().heights, facts.step), stop_(stop) {}
+  /// @param kept  Gets to know what is lost.
+  FloorTiles(const RasterSource& source, const FloorFacts& facts, KeptRaster& kept,
+             const std::stop_token& stop)
+      : source_(source),
+        facts_(facts),
+        numbers_(source.frame().heights, facts.step),
+        kept_(kept),
+        stop_(stop) {}
 
   /// Adds all tiles, until something stands against it.
   Outcome add_all(FloorWriter& floor) {
@@ -97,7 +103,7 @@ class FloorTiles {
     std::tie(window_.y0, window_.height) = along(corner.y, source_.height());
     heights_.resize(window_.samples());
     valid_.resize(window_.samples());
-    source_.read(window_, heights_, valid_);
+    source_.read(window_, heights_, valid_, kept_);
     lone_.assign(window_.samples(), 0);
     for (const std::uint64_t i : find_lone_samples(valid_, window_)) lone_[i] = 1;
   }
@@ -135,6 +141,9 @@ class FloorTiles {
       return;
     }
     const OrderedHeight height = numbers_.ordered(heights_[i]);
+    if (numbers_.bits(height) != heights_[i] && kept_.lost.empty()) {
+      kept_.lost = "the sign of each zero";
+    }
     if (lone_[i] == 0) {
       tile_.heights[place] = height;
       return;
@@ -146,6 +155,7 @@ class FloorTiles {
   const RasterSource& source_;
   const FloorFacts& facts_;
   const FloorNumbers numbers_;
+  KeptRaster& kept_;
   const std::stop_token& stop_;
   SampleRange window_;
   std::vector<HeightBits> heights_;
@@ -155,8 +165,9 @@ class FloorTiles {
 
 }  // namespace
 
-void add_raster_floor(const RasterSource& source, StoreWriter& writer,
-                      const std::stop_token& stop) {
+KeptRaster add_raster_floor(const RasterSource& source, StoreWriter& writer,
+                            const std::stop_token& stop) {
+  KeptRaster kept;
   FloorFacts facts;
   facts.shape = {5, static_cast<std::uint32_t>(source.width()),
                  static_cast<std::uint32_t>(source.height())};
@@ -165,8 +176,12 @@ void add_raster_floor(const RasterSource& source, StoreWriter& writer,
   facts.step = next_step < kSteps.size() ? kSteps[next_step] : 0.0;
   Outcome outcome = Outcome::kDone;
   do {
+    kept = source.kept();
+    facts.source = kept.number;
+    facts.nodata = kept.nodata;
     writer.add_floor(facts, [&](FloorWriter& floor) {
-      outcome = FloorTiles(source, facts, stop).add_all(floor);
+      outcome = FloorTiles(source, facts, kept, stop).add_all(floor);
+      facts.is_exact = kept.lost.empty();  // written behind the tiles
       return outcome == Outcome::kDone;
     });
     if (outcome == Outcome::kHeightsOfNoStep) {
@@ -176,6 +191,7 @@ void add_raster_floor(const RasterSource& source, StoreWriter& writer,
       --facts.shape.side_log2;  // tiles of 16 cells a side fit whatever their heights are
     }
   } while (outcome != Outcome::kDone);
+  return kept;
 }
 
 }  // namespace ptin

@@ -145,6 +145,7 @@ RasterMosaic RasterMosaic::duplicate() {
   copy.map_ = map_;
   copy.width_ = width_;
   copy.height_ = height_;
+  copy.is_cropped_ = is_cropped_;
   copy.sharers_ = sharers_;
   ++*copy.sharers_;
   for (PlacedPart& p : parts_) {
@@ -240,6 +241,7 @@ void RasterMosaic::crop(const SourceOptions::Bounds& b) {
     p.x -= x0;
     p.y -= y0;
   }
+  is_cropped_ = x1 - x0 + 1 != width_ || y1 - y0 + 1 != height_;
   width_ = x1 - x0 + 1;
   height_ = y1 - y0 + 1;
   const MapPoint origin = map_.to_map(static_cast<double>(x0), static_cast<double>(y0));

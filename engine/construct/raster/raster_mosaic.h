@@ -54,6 +54,9 @@ class RasterMosaic {
   [[nodiscard]] const std::string& path_at(std::int64_t x, std::int64_t y) const;
   /// Those of all files, in their order.
   [[nodiscard]] SourceWarnings warnings() const;
+  [[nodiscard]] bool is_one_file() const noexcept { return parts_.size() == 1; }
+  /// Whether crop() left samples out.
+  [[nodiscard]] bool is_cropped() const noexcept { return is_cropped_; }
   /// The files, for errors.
   [[nodiscard]] std::string context() const;
 
@@ -64,6 +67,12 @@ class RasterMosaic {
   /// Memory: none for one file; for several the values of one file at a time.
   template <class T>
   void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
+  /// As RasterPart::are_voids_alike().  REQUIRES: is_one_file()
+  template <class T>
+  [[nodiscard]] bool are_voids_alike(std::span<const T> values,
+                                     std::span<const std::uint8_t> valid) const {
+    return parts_[0].part.are_voids_alike(values, valid);
+  }
 
  private:
   struct PlacedPart {
@@ -82,6 +91,7 @@ class RasterMosaic {
 
   AffineMap map_;
   std::int64_t width_ = 0, height_ = 0;
+  bool is_cropped_ = false;
   std::vector<PlacedPart> parts_;
   std::uint64_t clock_ = 0;
   /// How many mosaics share the descriptors of the process: this one and its duplicates. Null when

@@ -5,6 +5,8 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -55,6 +57,22 @@ bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid, const 
     valid[i] = is_value;
   }
   return all_heights;
+}
+
+/// Whether two nodata values are one, NaN too.
+bool is_same(std::optional<double> a, std::optional<double> b) {
+  return a == b || (a && b && std::isnan(*a) && std::isnan(*b));
+}
+
+/// Whether a value is a number as the type of the raster has it, bit for bit.
+template <class T>
+bool has_bits_of(T value, double number) {
+  if constexpr (std::is_integral_v<T>) {
+    return static_cast<double>(value) == number;
+  } else {
+    const T other = static_cast<T>(number);
+    return std::memcmp(&value, &other, sizeof value) == 0;
+  }
 }
 
 /// Reverses the order of the rows of a row-major array.
@@ -153,8 +171,11 @@ RasterPart::RasterPart(std::string path, std::optional<double> nodata_override)
   shape_ = shape_of(*bands_->data, *bands_->height, path_, warnings_);
   session.tell_warnings(path_, warnings_);
   bands_->look_behind(shape_.raw);
-  const std::optional<double> nodata =
-      nodata_override_ ? nodata_override_ : declared_nodata(*bands_->height);
+  const std::optional<double> declared = declared_nodata(*bands_->height);
+  const std::optional<double> nodata = nodata_override_ ? nodata_override_ : declared;
+  shape_.nodata = nodata;
+  shape_.is_overridden = nodata_override_.has_value() && !is_same(nodata, declared);
+  shape_.is_masked = bands_->mask != nullptr || bands_->alpha != nullptr;
   nodata_ = nodata_range(nodata, shape_.stored);
   if (nodata && !std::isnan(*nodata) && nodata_.is_empty()) {
     char text[32];
@@ -233,6 +254,26 @@ void RasterPart::read(const SampleRange& window, std::span<T> values,
   }
 }
 
+template <class T>
+bool RasterPart::are_voids_alike(std::span<const T> values,
+                                 std::span<const std::uint8_t> valid) const {
+  // GDAL hands out the nodata value where a VRT has no source, and 0 where it has no such value either.
+  const bool has_background = std::is_integral_v<T> && shape_.nodata.has_value();
+  const double nodata = shape_.nodata.value_or(std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool is_alike = valid[i] != 0 || has_bits_of(values[i], nodata) ||
+                          (has_background && static_cast<double>(values[i]) == kBackground);
+    if (!is_alike) return false;
+  }
+  return true;
+}
+
+template bool RasterPart::are_voids_alike(std::span<const std::int32_t>,
+                                          std::span<const std::uint8_t>) const;
+template bool RasterPart::are_voids_alike(std::span<const float>,
+                                          std::span<const std::uint8_t>) const;
+template bool RasterPart::are_voids_alike(std::span<const double>,
+                                          std::span<const std::uint8_t>) const;
 template void RasterPart::read(const SampleRange&, std::span<std::int32_t>,
                                std::span<std::uint8_t>);
 template void RasterPart::read(const SampleRange&, std::span<float>, std::span<std::uint8_t>);

@@ -27,7 +27,10 @@ enum class RawType : std::uint8_t { kInt32, kFloat32, kFloat64 };
 struct RasterShape {
   std::int64_t width = 0;
   std::int64_t height = 0;
-  AffineMap map;                   ///< From samples to the CRS.
+  AffineMap map;  ///< From samples to the CRS.
+  /// As the file states it, skew and order of rows and columns too; none: it states none.
+  std::optional<std::array<double, 6>> geotransform;
+  bool is_point = false;           ///< The file calls its pixels points (AREA_OR_POINT).
   bool georeferenced = false;      ///< false: the map is the identity, in pixels.
   bool rows_from_south = false;    ///< The file's first row is the southernmost.
   bool columns_from_east = false;  ///< The file's first column is the easternmost.
@@ -39,6 +42,9 @@ struct RasterShape {
   StoredType stored;
   double scale = 1.0;  ///< height = offset + scale * raw value
   double offset = 0.0;
+  std::optional<double> nodata;  ///< The nodata value in force: the caller's, or what is declared.
+  bool is_overridden = false;    ///< The file declares another nodata value than that in force.
+  bool is_masked = false;        ///< A band beside the heights tells which of them count.
   std::array<int, 2> block = {1, 1};  ///< Width and height of the file's own blocks.
 };
 
@@ -74,6 +80,13 @@ class RasterPart {
   ///                invalid_argument  a height that is not finite: the message names its pixel
   template <class T>
   void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
+
+  /// Whether all values that are no heights follow from what is declared: they are the nodata value, or
+  /// where there is none the usual NaN, bit for bit.
+  /// @param values, valid  As read() gave them.
+  template <class T>
+  [[nodiscard]] bool are_voids_alike(std::span<const T> values,
+                                     std::span<const std::uint8_t> valid) const;
 
  private:
   struct Bands;

@@ -133,6 +133,7 @@ void describe_no_place(GDALDataset& data, const std::string& path, bool has_crs,
 /// GDAL's geotransform speaks of pixel corners whether the file calls its pixels areas or points.
 void set_map(const std::array<double, 6>& t, const std::string& path, RasterShape& shape) {
   shape.georeferenced = true;
+  shape.geotransform = t;
   if (!std::all_of(t.begin(), t.end(), [](double v) { return std::isfinite(v); }) || t[1] == 0 ||
       t[5] == 0) {
     refuse("this raster has an impossible geotransform", path);
@@ -238,6 +239,8 @@ void describe_place(GDALDataset& data, const std::string& path, RasterShape& sha
                     SourceWarnings& warnings) {
   shape.width = data.GetRasterXSize();
   shape.height = data.GetRasterYSize();
+  const char* const pixels = data.GetMetadataItem(GDALMD_AREA_OR_POINT);
+  shape.is_point = pixels != nullptr && EQUAL(pixels, GDALMD_AOP_POINT);
   if (shape.width - 1 > kGridMax || shape.height - 1 > kGridMax) {
     refuse("this raster has more than 2^30 columns or rows, which is the limit of the grid", path);
   }

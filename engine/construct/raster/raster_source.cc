@@ -22,6 +22,46 @@
 
 namespace ptin {
 
+namespace {
+
+constexpr const char* kLostVoids = "what stood in each of the samples without a height";
+constexpr const char* kLostNumbers = "each of the numbers that were rounded to heights";
+
+SourceNumber number_of(const StoredType& stored) {
+  switch (stored.type) {
+    case GDT_Byte:
+      return stored.signed_bytes ? SourceNumber::kInt8 : SourceNumber::kUInt8;
+    case GDT_UInt16:
+      return SourceNumber::kUInt16;
+    case GDT_Int16:
+      return SourceNumber::kInt16;
+    case GDT_UInt32:
+      return SourceNumber::kUInt32;
+    case GDT_Int32:
+      return SourceNumber::kInt32;
+    case GDT_Float32:
+      return SourceNumber::kFloat32;
+    case GDT_Float64:
+      return SourceNumber::kFloat64;
+    default:
+      return SourceNumber::kUnknown;
+  }
+}
+
+/// Whether the heights are the numbers from which they were made, bit for bit.
+bool are_given_back(const HeightEncoding& encoding, std::span<const HeightBits> heights,
+                    std::span<const double> numbers, std::span<const std::uint8_t> valid) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (valid[i] != 0 && std::bit_cast<std::uint64_t>(encoding.height(heights[i])) !=
+                             std::bit_cast<std::uint64_t>(numbers[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 // ---------------------------------------------------------------------------------------------------
 // Opening.
 
@@ -172,10 +212,44 @@ RasterSource RasterSource::duplicate() const {
 }
 
 // ---------------------------------------------------------------------------------------------------
+// What is kept of a raster.
+
+KeptRaster RasterSource::kept() const {
+  const RasterShape& shape = mosaic_.first();
+  const bool is_scaled = shape.scale != 1.0 || shape.offset != 0.0;
+  KeptRaster kept{number_of(shape.stored), shape.nodata, shape.geotransform, shape.is_point, ""};
+  if (!mosaic_.is_one_file()) {
+    kept.lost = "which sample was of which of its rasters";
+  } else if (mosaic_.is_cropped()) {
+    kept.lost = "what lies outside of the --bbox of its build";
+  } else if (shape.is_overridden) {
+    kept.lost = "the nodata value in whose place its build was given --nodata";
+  } else if (shape.is_masked) {
+    kept.lost = "the mask that told which samples count";
+  } else if (kept.number == SourceNumber::kUnknown) {
+    kept.lost = "the type " + shape.type_name + " of its numbers";
+  } else if (is_scaled && shape.raw != RawType::kInt32) {
+    kept.lost = "each of the numbers that a scale and an offset made heights";
+  }
+  return kept;
+}
+
+// ---------------------------------------------------------------------------------------------------
 // Reading windows.
 
 void RasterSource::read(const SampleRange& window, std::span<HeightBits> heights,
                         std::span<std::uint8_t> valid) const {
+  read_samples(window, heights, valid, nullptr);
+}
+
+void RasterSource::read(const SampleRange& window, std::span<HeightBits> heights,
+                        std::span<std::uint8_t> valid, KeptRaster& kept) const {
+  read_samples(window, heights, valid, kept.lost.empty() ? &kept : nullptr);
+}
+
+/// @param kept  Null: nobody wants to know.
+void RasterSource::read_samples(const SampleRange& window, std::span<HeightBits> heights,
+                                std::span<std::uint8_t> valid, KeptRaster* kept) const {
   const bool inside = window.x0 >= 0 && window.y0 >= 0 && window.width > 0 && window.height > 0 &&
                       window.x0 <= width() - window.width && window.y0 <= height() - window.height;
   if (!inside || heights.size() != window.samples() || valid.size() != heights.size()) {
@@ -185,6 +259,7 @@ void RasterSource::read(const SampleRange& window, std::span<HeightBits> heights
   const std::lock_guard lock(*mutex_);
   const auto read_as = [&]<class T>(std::span<T> raw, auto to_bits) {
     mosaic_.read<T>(window, raw, valid);
+    if (kept != nullptr && !mosaic_.are_voids_alike<T>(raw, valid)) kept->lost = kLostVoids;
     for (std::size_t i = 0; i < heights.size(); ++i) {
       heights[i] = valid[i] ? to_bits(raw[i]) : 0;
     }
@@ -204,6 +279,9 @@ void RasterSource::read(const SampleRange& window, std::span<HeightBits> heights
       read_as(std::span(values), [&](double v) {
         return encode_height(frame_.heights, mosaic_.first().offset + mosaic_.first().scale * v);
       });
+      if (kept != nullptr && !are_given_back(frame_.heights, heights, values, valid)) {
+        kept->lost = kLostNumbers;
+      }
     }
   }
 }

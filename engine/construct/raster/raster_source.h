@@ -14,6 +14,7 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
+#include "engine/construct/raster/raster_kept.h"
 #include "engine/construct/raster/raster_mosaic.h"
 #include "engine/construct/raster/raster_suspects.h"
 #include "engine/construct/scratch/array_file.h"
@@ -95,10 +96,20 @@ class RasterSource {
   void read(const SampleRange& window, std::span<HeightBits> heights,
             std::span<std::uint8_t> valid) const;
 
+  /// What a file can keep of the raster, by what is declared: samples are not looked at.
+  [[nodiscard]] KeptRaster kept() const;
+  /// As read(), and adds to what is lost by looking at the samples: voids that are not alike, and
+  /// numbers that heights do not give back.
+  /// @param kept  That of kept(), and of windows before.
+  void read(const SampleRange& window, std::span<HeightBits> heights, std::span<std::uint8_t> valid,
+            KeptRaster& kept) const;
+
  private:
   explicit RasterSource(RasterMosaic files) : mosaic_(std::move(files)) {}
   [[nodiscard]] static RasterSource opened(const std::vector<std::string>& paths,
                                            const SourceOptions& options);
+  void read_samples(const SampleRange& window, std::span<HeightBits> heights,
+                    std::span<std::uint8_t> valid, KeptRaster* kept) const;
   void take_unit(const std::string& declared, const std::string& path,
                  const SourceOptions& options);
   void take_plane_unit(const std::string& path);

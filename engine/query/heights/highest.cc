@@ -96,7 +96,7 @@ class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
   }
 
   void search() {
-    if (const Floor* const floor = detail_.is_full() ? terrain_.floor() : nullptr) {
+    if (const Floor* const floor = floor_for(terrain_, detail_)) {
       visit_floor_best_first(*floor, facts_.heights, filter_.box, *this, cut_off(), context_.cost);
       return;
     }

@@ -96,7 +96,7 @@ LocateResult locate_in_groups(const OpenedTerrain& terrain, std::span<const MapP
   const Detail detail(request.detail, terrain.record_source(), context);
   LocateResult result;
   result.points.resize(points.size());
-  const Floor* const floor = detail.is_full() ? terrain.floor() : nullptr;
+  const Floor* const floor = floor_for(terrain, detail);
   const std::vector<PointOnCurve> ordered = along_the_curve(points, store, floor, context);
   const PointGroup all{ordered, result.points, floor, detail, context};
   const std::uint64_t fit =

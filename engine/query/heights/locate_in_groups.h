@@ -24,7 +24,7 @@ struct PointOnCurve {
 struct PointGroup {
   std::span<const PointOnCurve> points;
   std::span<LocatedPoint> answers;  ///< One for each point of the request, by PointOnCurve::index.
-  const Floor* floor;               ///< The terrain's, where the full TIN is asked for; else null.
+  const Floor* floor;               ///< floor_for() the terrain and the detail.
   const Detail& detail;
   QueryContext& context;
 

@@ -13,11 +13,20 @@
 #include "engine/query/living/living_triangle.h"
 #include "engine/query/living/raster_square.h"
 #include "engine/query/select/accounting.h"
+#include "engine/query/select/detail.h"
+#include "engine/query/select/opened_terrain.h"
 #include "engine/query/shape/spot.h"
 #include "engine/query/walk/walk.h"
 #include "storage/floor.h"
 
 namespace ptin {
+
+/// The heights from which a level is answered: those of the terrain, where it is the full TIN. Null: it
+/// is answered from stars.
+/// @throws Error as OpenedTerrain::floor()
+[[nodiscard]] inline const Floor* floor_for(const OpenedTerrain& terrain, const Detail& detail) {
+  return detail.is_full() ? terrain.floor() : nullptr;
+}
 
 /// What of the full TIN is wanted.
 struct FloorWish {

@@ -69,7 +69,7 @@ bool meets_heights(const LivingTriangle& t, const LivingPlace& place,
 }  // namespace
 
 bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor) {
-  if (const Floor* const floor = stars_.detail().is_full() ? terrain_.floor() : nullptr) {
+  if (const Floor* const floor = floor_for(terrain_, stars_.detail())) {
     return read_floor(*floor, place, context, visitor);
   }
   stars_.clear();

@@ -327,7 +327,7 @@ TriangleAt triangle_on_sides(FloorAtSpots& triangles, Spot spot, QueryCost& cost
 void find_triangles(const OpenedTerrain& terrain, const Detail& detail, std::span<const Spot> spots,
                     std::span<TriangleAt> found, std::uint64_t held, QueryContext& context) {
   std::fill(found.begin(), found.end(), TriangleAt{});
-  if (const Floor* const floor = detail.is_full() ? terrain.floor() : nullptr) {
+  if (const Floor* const floor = floor_for(terrain, detail)) {
     find_on_floor(terrain.store(), *floor, spots, found, context);
   } else if (!spots.empty()) {
     Finder(terrain, detail, held, context).find(spots, found);

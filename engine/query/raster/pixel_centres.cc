@@ -17,6 +17,13 @@ bool are_unit_steps(const std::vector<std::int64_t>& spots) {
          std::adjacent_find(spots.begin(), spots.end(), is_off) == spots.end();
 }
 
+/// Whether those of ascending spots that lie in an interval of the grid are whole grid units.
+bool are_whole(const std::vector<std::int64_t>& spots, std::int32_t low, std::int32_t high) {
+  return std::all_of(spots.begin(), spots.end(), [&](std::int64_t v) {
+    return v % kGridUnit == 0 || v < low * kGridUnit || v > high * kGridUnit;
+  });
+}
+
 /// A coordinate that lies outside of [low, high] by at most `margin`, taken to the nearer end.
 double taken_in(double v, double low, double high, double margin) {
   if (v < low && low - v <= margin) return low;
@@ -31,7 +38,8 @@ std::int32_t grid_coordinate(std::int64_t v) {
 }  // namespace
 
 PixelCentres::PixelCentres(const StoreFacts& facts, const PixelLattice& lattice,
-                           const PixelRect& pixels) {
+                           const PixelRect& pixels)
+    : bounds_(facts.bounds) {
   const SpotMap map(facts.map, facts.bounds);
   const MapPoint low = facts.map.to_map(facts.bounds.min_x, facts.bounds.min_y);
   const MapPoint high = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
@@ -56,9 +64,23 @@ PixelCentres::PixelCentres(const StoreFacts& facts, const PixelLattice& lattice,
     const std::optional<Spot> spot = map.spot({low.x, y});
     return spot ? spot->y : beyond(y > low.y);
   });
+  are_on_grid_ = are_whole(x_.spots, bounds_.min_x, bounds_.max_x) &&
+                 are_whole(y_.spots, bounds_.min_y, bounds_.max_y);
   are_grid_positions_ = are_unit_steps(x_.spots) && are_unit_steps(y_.spots) &&
                         contains(GridBox{0, 0, kGridMax, kGridMax}, box());
   if (are_grid_positions_) first_ = {box().min_x, box().min_y};
+}
+
+PixelCentres::GridLine PixelCentres::on_grid(const Axis& axis, std::int32_t low,
+                                             std::int32_t high) {
+  const auto begin = std::lower_bound(axis.spots.begin(), axis.spots.end(), low * kGridUnit);
+  const auto end = std::upper_bound(begin, axis.spots.end(), high * kGridUnit);
+  GridLine line{
+      {}, axis.turned(static_cast<std::size_t>(begin - axis.spots.begin())), axis.descends};
+  for (auto spot = begin; spot != end; ++spot) {
+    line.at.push_back(static_cast<std::int32_t>(*spot / kGridUnit));
+  }
+  return line;
 }
 
 GridBox PixelCentres::box() const noexcept {

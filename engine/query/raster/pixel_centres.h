@@ -44,6 +44,21 @@ class PixelCentres {
     return y_.turned(row) * width() + x_.turned(column);
   }
 
+  /// Whether each centre that lies in the box of the terrain is a position of the grid.
+  [[nodiscard]] bool are_on_grid() const noexcept { return are_on_grid_; }
+  /// Columns, or rows, along one side, ascending: the coordinates of those in the box of the terrain, and
+  /// how the first of them is told from its place.
+  struct GridLine {
+    std::vector<std::int32_t> at;
+    std::size_t first;  ///< The column (row) of at[0].
+    bool descends;      ///< at[i] is the column first - i, else first + i.
+  };
+  /// REQUIRES: are_on_grid()
+  [[nodiscard]] GridLine columns_on_grid() const {
+    return on_grid(x_, bounds_.min_x, bounds_.max_x);
+  }
+  [[nodiscard]] GridLine rows_on_grid() const { return on_grid(y_, bounds_.min_y, bounds_.max_y); }
+
   /// Calls found(place, spot) for each centre in the closed triangle a, b, c, counter-clockwise,
   /// and for some that are next to it: what is off is the rounding of where rows enter and leave.
   template <class Found>
@@ -64,7 +79,11 @@ class PixelCentres {
     [[nodiscard]] std::size_t first_from(std::int64_t v) const noexcept;
   };
 
+  [[nodiscard]] static GridLine on_grid(const Axis& axis, std::int32_t low, std::int32_t high);
+
+  GridBox bounds_;
   Axis x_, y_;
+  bool are_on_grid_ = false;
   bool are_grid_positions_ = false;
   GridPoint first_;  ///< The least centre, where they are positions of the grid.
 };

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/triangle_at.h"
+#include "engine/query/raster/floor_pixels.h"
 #include "engine/query/raster/pixel_centres.h"
 #include "engine/query/raster/pixel_normals.h"
 #include "engine/query/raster/pixel_sampler.h"
@@ -25,6 +26,10 @@ namespace {
 constexpr double kRecordsOfPixel = 128;
 /// Pixels located together: few enough to tell of progress now and then.
 constexpr std::uint64_t kLocatedTogether = 4096;
+/// Pixels of a raster's full TIN that are sampled together where there are several blocks: they come by
+/// tiles, which are read more than once along the sides of what is sampled alone, and this many stay in a
+/// processor's cache.
+constexpr std::int64_t kOfFloorTogether = std::int64_t{1} << 19;
 constexpr std::int64_t kMostSide = INT32_MAX;
 
 void check(const std::string& file, const RasterRequest& request) {
@@ -93,7 +98,8 @@ class RasterReading {
         context_(request.limits, terrain.store().path()),
         asked_(detail_of(terrain, request, context_)),
         detail_(asked_, terrain.record_source(), context_),
-        reader_(terrain, detail_) {}
+        reader_(terrain, detail_),
+        floor_(detail_.is_by_error() && detail_.tolerance() < 0 ? terrain.floor() : nullptr) {}
 
   void hand_over(const RasterReceiver& receive) {
     const PixelRect& p = request_.pixels;
@@ -156,6 +162,7 @@ class RasterReading {
   DetailRequest asked_;
   Detail detail_;
   LivingReader reader_;
+  const Floor* const floor_;  ///< The heights of the full TIN of a raster; else null.
   std::vector<double> heights_;
   std::vector<PointState> states_;
   std::vector<GridNormal> normals_;
@@ -189,6 +196,7 @@ bool RasterReading::hand_over(const PixelRect& blocks, const RasterReceiver& rec
   const PixelRect pixels = pixels_of(blocks);
   context_.hold(0);
   if (blocks.pixels() > 1 && !context_.fits(2 * bytes_of(pixels))) return false;
+  if (blocks.pixels() > 1 && floor_ != nullptr && pixels.pixels() > kOfFloorTogether) return false;
   context_.hold(bytes_of(pixels));
   const auto count = static_cast<std::size_t>(pixels.pixels());
   if (asks_surface()) {
@@ -236,7 +244,15 @@ void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers
   const PixelCentres centres(facts_, request_.lattice, pixels);
   PixelSampler<double> sampler(facts_, centres, buffers);
   if (meets(centres.box(), facts_.bounds)) {
-    if (is_sparse(centres)) {
+    if (floor_ != nullptr && are_on_floor(floor_->facts().shape, centres)) {
+      copy_floor(
+          *floor_, facts_.heights, centres, buffers,
+          [this] {
+            tell_progress(0);
+            context_.check_stop();
+          },
+          context_.cost.io);
+    } else if (is_sparse(centres)) {
       locate(centres, buffers);
     } else {
       VisitorOf sampling(

@@ -221,7 +221,7 @@ void SightStars::begin_search(Aim aim, Part part, LevelStars& stars) {
 /// Looks for triangles of a level along a part of the way.
 void SightStars::search(Aim aim, Part part, LevelStars& stars) {
   begin_search(aim, part, stars);
-  if (const Floor* const floor = stars.detail().is_full() ? terrain_.floor() : nullptr) {
+  if (const Floor* const floor = floor_for(terrain_, stars.detail())) {
     visit_floor_best_first(*floor, facts_.heights, box_of(part), *this, {cut_off()}, context_.cost);
     return;
   }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/floor_tin.h"
 #include "engine/query/refine/refine.h"
 #include "engine/query/select/detail.h"
@@ -177,7 +178,7 @@ class ViewshedSearch {
     const double reach_y = request_.radius / request_.ground_per_map_y;
     const MapPoint eye = request_.eye;
     const Window around{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y};
-    if (const Floor* const floor = detail_.is_full() ? terrain_.floor() : nullptr) {
+    if (const Floor* const floor = floor_for(terrain_, detail_)) {
       const StoreFacts& facts = store_.facts();
       tin_ = floor_tin(*floor, facts.heights, GridRegion(around, facts.map).bounds(), context_);
       return;
