@@ -160,18 +160,25 @@ TEST_F(RemoteTest, AsksTheServerInFewRounds) {
   counts = server_->take_counts();
   EXPECT_EQ(counts.requests, point.requests + 1);
   EXPECT_EQ(counts.bytes, point.bytes + (std::uint64_t{64} << 10));
-  // The index of so small a file comes with its front.
-  EXPECT_EQ(point.rounds, 1U);
-  EXPECT_LE(point.requests, 8U);
-  EXPECT_LE(point.bytes, std::uint64_t{48} << 10);
+  // The root above the heights, and a page of them.
+  EXPECT_EQ(point.rounds, 2U);
+  EXPECT_EQ(point.requests, 2U);
+  EXPECT_LE(point.bytes, std::uint64_t{16} << 10);
+  // By stars the index of so small a file comes with its front.
+  const Cost by_stars = cost_of(
+      {"locate", url("plain"), "--points", out.file("point.csv"), "--json", "--by", "stars"});
+  EXPECT_EQ(by_stars.rounds, 1U);
+  EXPECT_LE(by_stars.requests, 8U);
+  EXPECT_LE(by_stars.bytes, std::uint64_t{48} << 10);
+  server_->take_counts();
 
   const Cost window = cost_of({"refine", url("plain"), "--window", "379000", "3803900", "379300",
                                "3804200", "--clip", "-o", out.file("w.ply"), "--json"});
   counts = server_->take_counts();
   EXPECT_EQ(counts.requests, window.requests + 1);
-  EXPECT_EQ(window.rounds, 1U);
-  EXPECT_LE(window.requests, 20U);
-  EXPECT_LE(window.bytes, std::uint64_t{320} << 10);
+  EXPECT_EQ(window.rounds, 2U);
+  EXPECT_LE(window.requests, 3U);
+  EXPECT_LE(window.bytes, std::uint64_t{40} << 10);
 }
 
 TEST_F(RemoteTest, KeepsWhatWasReadInAFolder) {
@@ -240,7 +247,7 @@ TEST_F(RemoteTest, IsServed) {
   EXPECT_EQ(near.status, 200) << near.body;
   EXPECT_EQ(far.status, 200) << far.body;
   EXPECT_EQ(near.body, far.body);
-  EXPECT_NE(far.header("server-timing").find("remote_rounds=1 "), std::string::npos);
+  EXPECT_NE(far.header("server-timing").find("remote_rounds=2 "), std::string::npos);
   EXPECT_EQ(service.get("/collections/far/file").status, 403);
   // The object is another one by now: the question that meets it fails, the next ones are of it.
   const auto extent_of = [&](const std::string& name) {

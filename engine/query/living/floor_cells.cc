@@ -284,7 +284,7 @@ const FloorAtSpots::Kept& FloorAtSpots::tile_at(std::uint32_t column, std::uint3
 
 std::uint64_t FloorAtSpots::along(const FloorShape& shape, Spot spot) noexcept {
   const auto tile = [&](std::int64_t v, std::uint32_t samples) {
-    const std::int64_t last = std::int64_t{samples} - 2;
+    const std::int64_t last = std::max<std::int64_t>(0, std::int64_t{samples} - 2);
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(v >> kSpotBits, 0, last) >>
                                       shape.side_log2);
   };
