@@ -271,6 +271,7 @@ TEST_F(Measured, AColdPointBringsLittleIntoTheCache) {
     for (std::uint64_t i = 0; i < 10; ++i) {
       ASSERT_EQ(cache.drop(), 0U);
       const Terrain terrain = opener.open(store_, way);
+      ASSERT_NE(terrain.floor(), nullptr);  // its root comes with the first question, once
       const std::uint64_t front = cache.resident_bytes();
       EXPECT_LE(front, std::uint64_t{16} << 10) << name_of(way);
       const Question q = questions->make(QuestionKind::kPoint, i, terrain);

@@ -59,7 +59,7 @@ class SamplesOfWindow {
 }  // namespace
 
 Tin floor_tin(const Floor& floor, const HeightEncoding& heights, const GridBox& box,
-              QueryContext& context) {
+              const std::function<bool(const GridBox&)>& wants, QueryContext& context) {
   const FloorShape& shape = floor.facts().shape;
   SampleRange window;
   // A cell to each side: the eye on a sample, say, has cells on all sides.
@@ -73,7 +73,7 @@ Tin floor_tin(const Floor& floor, const HeightEncoding& heights, const GridBox& 
                        static_cast<std::int32_t>(window.y0 + window.height - 1)};
   SamplesOfWindow samples(floor, window);
   Floor::Recent recent;
-  floor.visit([&](const Floor::Bounds& b) { return meets(b.box, wanted); },
+  floor.visit([&](const Floor::Bounds& b) { return meets(b.box, wanted) && wants(b.box); },
               [&](const Floor::TileAt& at, const FloorTile& tile) {
                 context.check_stop();
                 context.cost.samples_read += tile.samples();

@@ -43,23 +43,36 @@ void check(const ViewshedRequest& r) {
   }
 }
 
+/// Distances over ground from the eye.
+struct GroundDistance {
+  MapPoint eye;               ///< Grid units.
+  double ground_x, ground_y;  ///< Ground units of a grid unit.
+
+  /// To the nearest point of a box; 0: it holds the eye.
+  [[nodiscard]] double to(const GridBox& box) const noexcept {
+    const double x = ground_x * std::max({box.min_x - eye.x, eye.x - box.max_x, 0.0});
+    const double y = ground_y * std::max({box.min_y - eye.y, eye.y - box.max_y, 0.0});
+    return std::sqrt(x * x + y * y);
+  }
+};
+
+/// Rounding of a distance that is compared with the radius, here and where targets are.
+constexpr double kReach = 1 + 1e-12;
+
 /// True for records that may deviate by more than `slope` times their distance from the eye, and
 /// for all whose roi holds the eye. Monotone: a larger box is no farther.
 class DeviationTowards final : public AttributePredicate {
  public:
-  /// @param eye  Grid units.  @param ground_x, ground_y  Ground units of a grid unit.
-  DeviationTowards(MapPoint eye, double ground_x, double ground_y, double slope)
-      : eye_(eye), ground_x_(ground_x), ground_y_(ground_y), slope_(slope) {}
+  DeviationTowards(const GroundDistance& from_eye, double slope)
+      : from_eye_(from_eye), slope_(slope) {}
   [[nodiscard]] bool holds(const Attributes& a) const noexcept override {
-    const double x = ground_x_ * std::max({a.roi.min_x - eye_.x, eye_.x - a.roi.max_x, 0.0});
-    const double y = ground_y_ * std::max({a.roi.min_y - eye_.y, eye_.y - a.roi.max_y, 0.0});
-    const double distance = std::sqrt(x * x + y * y);
+    const double distance = from_eye_.to(a.roi);
     return distance == 0 || a.deviation > slope_ * distance;
   }
 
  private:
-  MapPoint eye_;
-  double ground_x_, ground_y_, slope_;
+  GroundDistance from_eye_;
+  double slope_;
 };
 
 /// Puts what two biased sweeps are certain of into the result of the plain sweep.
@@ -180,7 +193,10 @@ class ViewshedSearch {
     const Window around{eye.x - reach_x, eye.y - reach_y, eye.x + reach_x, eye.y + reach_y};
     if (const Floor* const floor = floor_for(terrain_, detail_)) {
       const StoreFacts& facts = store_.facts();
-      tin_ = floor_tin(*floor, facts.heights, GridRegion(around, facts.map).bounds(), context_);
+      const GroundDistance away = distance_from_eye();
+      tin_ = floor_tin(
+          *floor, facts.heights, GridRegion(around, facts.map).bounds(),
+          [&](const GridBox& box) { return away.to(box) <= request_.radius * kReach; }, context_);
       return;
     }
     RefineRequest wanted;
@@ -193,16 +209,18 @@ class ViewshedSearch {
     tin_ = std::move(refined.tin);
   }
 
-  [[nodiscard]] PredicatePtr finer_towards_eye() {
+  [[nodiscard]] GroundDistance distance_from_eye() const {
     const AffineMap& map = store_.facts().map;
-    slope_ = allowed() / request_.radius;
     const auto spot = SpotMap(map, store_.facts().bounds).spot(request_.eye);
     // find_eye() refuses an eye outside
-    const MapPoint at = spot ? grid_of(*spot) : map.to_grid(request_.eye);
-    return any_of(
-        {std::make_shared<AboveError>(detail_.tolerance()),
-         std::make_shared<DeviationTowards>(at, map.step_x * request_.ground_per_map_x,
-                                            map.step_y * request_.ground_per_map_y, slope_)});
+    return {spot ? grid_of(*spot) : map.to_grid(request_.eye),
+            map.step_x * request_.ground_per_map_x, map.step_y * request_.ground_per_map_y};
+  }
+
+  [[nodiscard]] PredicatePtr finer_towards_eye() {
+    slope_ = allowed() / request_.radius;
+    return any_of({std::make_shared<AboveError>(detail_.tolerance()),
+                   std::make_shared<DeviationTowards>(distance_from_eye(), slope_)});
   }
 
   /// The deviation allowed at the radius: the tolerance asked for, or the certified error of the

@@ -263,7 +263,7 @@ void expect_few_reads_of_points(const Terrain& terrain, std::mt19937_64& random)
                    sample = facts.map.to_map(x, y);
     const LocateResult one = terrain.locate({&within, 1}, {}, AnswerBy::kHeights);
     ASSERT_EQ(one.cost.io.pages, 1U);
-    ASSERT_EQ(one.cost.io.index_nodes, levels);
+    ASSERT_EQ(one.cost.io.index_nodes, levels - 1) << "the root is in memory";
     pages += terrain.locate({&sample, 1}, {}, AnswerBy::kHeights).cost.io.pages;
   }
   EXPECT_LE(static_cast<double>(pages), 1.05 * kPoints);
