@@ -14,6 +14,14 @@ namespace {
 /// Cells by their lower left samples, from the least to the greatest.
 struct Cells {
   std::int64_t min_x, min_y, max_x, max_y;
+
+  /// 0 where there is no cell.
+  [[nodiscard]] std::size_t triangles() const noexcept {
+    const auto along = [](std::int64_t min, std::int64_t max) {
+      return static_cast<std::size_t>(std::max<std::int64_t>(max - min + 1, 0));
+    };
+    return 2 * along(min_x, max_x) * along(min_y, max_y);
+  }
 };
 
 /// A sample of a tile.
@@ -68,18 +76,25 @@ class CellsOfTile {
   CellsOfTile(const Floor& floor, const HeightEncoding& heights) noexcept
       : shape_(floor.facts().shape), numbers_(floor.numbers()), heights_(heights) {}
 
+  /// Those of some cells that a tile has.
+  [[nodiscard]] Cells in(std::uint32_t column, std::uint32_t row, const FloorTile& tile,
+                         const Cells& cells) const noexcept {
+    const std::int64_t left = shape_.first_of(column), low = shape_.first_of(row);
+    return {std::max(cells.min_x, left), std::max(cells.min_y, low),
+            std::min<std::int64_t>(cells.max_x, left + tile.width - 2),
+            std::min<std::int64_t>(cells.max_y, low + tile.height - 2)};
+  }
   /// Takes the triangles of those cells that the tile has.
   template <class Take>
   void visit(std::uint32_t column, std::uint32_t row, const FloorTile& tile, const Cells& cells,
              const Take& take) const {
-    const std::int64_t left = shape_.first_of(column), low = shape_.first_of(row);
-    const std::int64_t last_x = std::min<std::int64_t>(cells.max_x, left + tile.width - 2);
-    const std::int64_t last_y = std::min<std::int64_t>(cells.max_y, low + tile.height - 2);
-    const GridPoint first{static_cast<std::int32_t>(left), static_cast<std::int32_t>(low)};
-    for (std::int64_t y = std::max(cells.min_y, low); y <= last_y; ++y) {
-      for (std::int64_t x = std::max(cells.min_x, left); x <= last_x; ++x) {
-        visit_cell(tile, first, static_cast<std::int32_t>(x - left),
-                   static_cast<std::int32_t>(y - low), take);
+    const GridPoint first{static_cast<std::int32_t>(shape_.first_of(column)),
+                          static_cast<std::int32_t>(shape_.first_of(row))};
+    const Cells here = in(column, row, tile, cells);
+    for (std::int64_t y = here.min_y; y <= here.max_y; ++y) {
+      for (std::int64_t x = here.min_x; x <= here.max_x; ++x) {
+        visit_cell(tile, first, static_cast<std::int32_t>(x - first.x),
+                   static_cast<std::int32_t>(y - first.y), take);
       }
     }
   }
@@ -138,11 +153,14 @@ std::optional<TileRange> tiles_of(const FloorShape& shape, const Cells& cells) {
 }  // namespace
 
 std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box) {
-  const std::optional<TileRange> tiles = tiles_of(shape, cells_of(box));
-  if (!tiles) return 0;
-  const std::uint64_t columns = std::uint64_t{tiles->last_column} - tiles->first_column + 1;
-  const std::uint64_t rows = std::uint64_t{tiles->last_row} - tiles->first_row + 1;
-  return (columns * rows) << (2 * shape.side_log2);
+  const Cells cells = cells_of(box);
+  const auto along = [](std::int64_t min, std::int64_t max, std::uint32_t samples) {
+    const std::int64_t first = std::max<std::int64_t>(min, 0);
+    const std::int64_t last = std::min<std::int64_t>(max + 1, std::int64_t{samples} - 1);
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(last - first + 1, 0));
+  };
+  return along(cells.min_x, cells.max_x, shape.width) *
+         along(cells.min_y, cells.max_y, shape.height);
 }
 
 namespace {
@@ -196,7 +214,8 @@ bool visit_floor(const Floor& floor, const HeightEncoding& heights, const FloorW
         return meets(b.box, wish.box) && (!wish.may_hold || wish.may_hold(b.box, b.codes));
       },
       [&](const Floor::TileAt& at, const FloorTile& tile) {
-        if (!begin(2 * tile.samples())) return false;
+        const Cells here = cells.in(at.column, at.row, tile, cells_of(wish.box));
+        if (!begin(here.triangles())) return false;
         cost.samples_read += tile.samples();
         if (wish.take_cells && tile.width > 1 && tile.height > 1 &&
             wish.take_cells(square.of(at, tile))) {

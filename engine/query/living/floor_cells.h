@@ -38,7 +38,7 @@ struct FloorWish {
   std::function<bool(const RasterSquare&)> take_cells;
 };
 
-/// How many samples the tiles have whose cells meet a box, about.
+/// How many samples the cells have that meet a box.
 [[nodiscard]] std::uint64_t floor_samples(const FloorShape& shape, const GridBox& box);
 
 /// Calls begin(most) before the triangles of each tile, of which there are at most so many, and take(t) for each
