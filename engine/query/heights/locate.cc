@@ -53,7 +53,7 @@ LocatedPoint answer_within(const FloorTriangle& t, const StoreFacts& facts) {
 
 /// Answers lie in the order of the request, so that most of them are not at hand: so many points before
 /// one is written its memory is asked for.
-constexpr std::size_t kAhead = 16;
+constexpr std::size_t kAnswersAhead = 16;
 
 /// Points of the full TIN of a raster, which come tile by tile.
 void locate_on_floor(const Floor& floor, const StoreFacts& facts, const PointGroup& group) {
@@ -68,8 +68,8 @@ void locate_on_floor(const Floor& floor, const StoreFacts& facts, const PointGro
     if (i % kStopInterval == 0) {
       group.context.check_stop();
     }
-    if (i + kAhead < group.points.size()) {
-      const LocatedPoint* const ahead = &group.answers[group.points[i + kAhead].index];
+    if (i + kAnswersAhead < group.points.size()) {
+      const LocatedPoint* const ahead = &group.answers[group.points[i + kAnswersAhead].index];
       prefetch(ahead);
       prefetch(&ahead->triangle.back());
     }
