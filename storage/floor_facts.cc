@@ -16,6 +16,8 @@ static_assert((1U << kMostSideLog2) == kMostFloorSide);
 /// With which the height of every number is finite.
 constexpr double kMostStep = static_cast<double>(std::numeric_limits<float>::max()) / 0x1p31;
 
+constexpr std::uint64_t kNaNBits = 0x7FF8000000000000U;  ///< The one form of a nodata of NaN.
+
 }  // namespace
 
 void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& root) noexcept {
@@ -27,7 +29,8 @@ void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& 
   root.width = facts.shape.width;
   root.height = facts.shape.height;
   root.step = layout::to_bits(facts.step);
-  root.nodata = layout::to_bits(facts.nodata.value_or(0.0));
+  const double nodata = facts.nodata.value_or(0.0);
+  root.nodata = std::isnan(nodata) ? kNaNBits : layout::to_bits(nodata);
   root.source_type = static_cast<std::uint32_t>(facts.source);
 }
 
@@ -58,7 +61,8 @@ const char* take_facts(const layout::FloorNode& root, const StoreFacts& store, F
   const bool has_nodata = (root.flags & kHasNodata) != 0;
   const double nodata = layout::to_double(root.nodata);
   if ((root.flags & ~(kIsExact | kHasNodata)) != 0 || (!has_nodata && root.nodata != 0) ||
-      std::isnan(nodata) || std::ranges::any_of(root.reserved, [](auto b) { return b != 0; })) {
+      (std::isnan(nodata) && root.nodata != kNaNBits) ||
+      std::ranges::any_of(root.reserved, [](auto b) { return b != 0; })) {
     return "the root above the heights has flags or bytes that no program writes";
   }
   facts.nodata = has_nodata ? std::optional(nodata) : std::nullopt;

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "engine/construct/raster/raster_surface.h"
-#include "engine/mesh/raster_tin.h"
 #include "engine/construct/tile/part_surface.h"
+#include "engine/mesh/raster_tin.h"
 #include "tests/construct/delaunay_tin.h"
 
 namespace ptin::bench {

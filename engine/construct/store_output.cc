@@ -200,7 +200,8 @@ void StoreOutput::resume(const nlohmann::json& position) {
 }
 
 void StoreOutput::add_floor(const std::function<KeptRaster(StoreWriter&)>& add) {
-  if (base_error_ == 0.0) {
+  // Flat parts that --max-error leaves out leave an error of 0 behind, but not each sample a vertex.
+  if (options_.max_error <= 0.0 && base_error_ == 0.0) {
     raster_ = add(*writer_);
   }
 }

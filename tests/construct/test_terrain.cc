@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "engine/construct/raster/raster_tile.h"
-#include "engine/mesh/raster_tin.h"
 #include "engine/geometry/infinity.h"
+#include "engine/mesh/raster_tin.h"
 #include "tests/construct/border_oracle.h"
 #include "tests/construct/delaunay_tin.h"
 #include "tests/construct/tin_surface.h"

@@ -266,7 +266,7 @@ TEST_F(FloorVerify, RefusesRootsThatNoProgramWrites) {
   expect_root_refused("flags or bytes", [](auto& r) { r.nodata = 1; });
   expect_root_refused("flags or bytes", [](auto& r) {
     r.flags = 2;
-    r.nodata = layout::to_bits(double(NAN));
+    r.nodata = layout::to_bits(double(NAN)) + 1;
   });
   expect_root_refused("flags or bytes", [](auto& r) { r.reserved[0] = 1; });
   for (const std::uint64_t pages : {std::uint64_t{0}, std::uint64_t{21}, UINT64_MAX}) {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/mesh/raster_tin.h"
 #include "engine/error.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/stop.h"
 
 namespace ptin {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/mesh/raster_tin.h"
 #include "engine/construct/tile/full_surface.h"
 #include "engine/construct/tile/part_surface.h"
+#include "engine/mesh/raster_tin.h"
 
 namespace ptin {
 

@@ -10,9 +10,9 @@
 
 #include "engine/construct/grid/crs.h"
 #include "engine/construct/raster/raster_surface.h"
-#include "engine/mesh/raster_tin.h"
 #include "engine/construct/tile/border_witnesses.h"
 #include "engine/construct/tile/part_surface.h"
+#include "engine/mesh/raster_tin.h"
 
 namespace ptin {
 

@@ -121,7 +121,6 @@ class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
   }
   bool begin_cells(const GridBox& /*box*/, Merit /*left*/) override {
     context_.check_stop();
-    context_.admit(best_.size() * kBytesACandidate);
     return true;
   }
   void take_cell(const LivingTriangle& t) override {
@@ -129,7 +128,10 @@ class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
       look_at(t);
     }
   }
-  Merit end_cells() override { return cut_off(); }
+  Merit end_cells() override {
+    context_.admit(best_.size() * kBytesACandidate);
+    return cut_off();
+  }
 
   Merit visit(PageId page, const StarAttributes& /*a*/) override {
     context_.check_stop();

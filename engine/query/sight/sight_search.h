@@ -43,9 +43,9 @@ class SightSearch {
   virtual void find_ends() = 0;
   /// True when as many stars, records or samples were read as the request allows.
   [[nodiscard]] bool out_of_budget() const noexcept {
-    return request_.budget &&
-           context_.cost.stars_read + context_.cost.samples_read + context_.cost.records_retrieved >=
-               *request_.budget;
+    return request_.budget && context_.cost.stars_read + context_.cost.samples_read +
+                                      context_.cost.records_retrieved >=
+                                  *request_.budget;
   }
 
   const SightFacts& facts_;

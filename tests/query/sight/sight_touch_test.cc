@@ -146,6 +146,7 @@ void check_all_ways(std::mt19937_64& random, const SmallTerrain& t, const Terrai
       check_exact(asked, truth, found);
     }
   };
+  check(AnswerBy::kBest, 0);
   check(AnswerBy::kStars, 0);
   check(AnswerBy::kSplits, 0);
   if (asked.request.verdict_only) {
