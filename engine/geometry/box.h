@@ -31,6 +31,11 @@ struct GridBox {
           std::max(a.max_y, b.max_y)};
 }
 
+/// Empty where they share no position.
+[[nodiscard]] constexpr GridBox intersection(const GridBox& a, const GridBox& b) noexcept {
+  return {std::max(a.min_x, b.min_x), std::max(a.min_y, b.min_y), std::min(a.max_x, b.max_x),
+          std::min(a.max_y, b.max_y)};
+}
 [[nodiscard]] constexpr GridBox united(const GridBox& a, GridPoint p) noexcept {
   return united(a, box_of(p));
 }

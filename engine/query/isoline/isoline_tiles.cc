@@ -44,9 +44,9 @@ class Worker final : private LivingVisitor {
     most_bytes_ = tile.most_bytes;
     is_full_ = false;
     tracer_.begin({tile.box, request_.region, request_.counts_vertices}, most_bytes_);
-    const std::uint64_t before = examined();
+    const std::uint64_t before = context_.cost.examined();
     const bool fits = reader_.read(place_, context_, *this) && !is_full_;
-    if (const std::uint64_t records = examined() - before; records > 0) {
+    if (const std::uint64_t records = context_.cost.examined() - before; records > 0) {
       bytes_of_record_ = static_cast<double>(tracer_.bytes_wanted()) / static_cast<double>(records);
     }
     if (fits) {
@@ -59,10 +59,6 @@ class Worker final : private LivingVisitor {
   [[nodiscard]] const QueryCost& cost() const noexcept { return context_.cost; }
 
  private:
-  /// Records, or samples of a raster.
-  [[nodiscard]] std::uint64_t examined() const noexcept {
-    return context_.cost.records_examined + context_.cost.samples_read;
-  }
   /// A tile that is expected not to fit is not read: halves of a tile that would have fitted cost less
   /// than a tile read in vain. The expectation is trusted less each time, since nothing is learnt then.
   bool expect(std::uint64_t records) override {

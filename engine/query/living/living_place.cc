@@ -19,10 +19,11 @@ namespace {
 /// level by few nodes.
 constexpr std::uint64_t kMostDirectoryBytes = std::uint64_t{64} << 10;
 
+constexpr GridBox kAllPlaces{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
+
 /// Whether a condition is known to ask for a place, and that place lies within a box.
 bool asks_within(const StarPredicate& condition, const GridBox& box) {
-  constexpr GridBox kEverything{INT32_MIN, INT32_MIN, INT32_MAX, INT32_MAX};
-  return condition.reach() != kEverything && contains(box, condition.reach());
+  return condition.reach() != kAllPlaces && contains(box, condition.reach());
 }
 
 PageId id_of(PageId page) { return page; }
@@ -113,7 +114,9 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
            (also == nullptr || also->may_hold({box, codes, kInfinity, -kInfinity}));
   };
   wish.take_cells = [&](const RasterSquare& square) { return visitor.take_cells(square); };
-  const std::uint64_t samples = floor_samples(floor.facts().shape, place.box);
+  const GridBox reach = place.stars == nullptr ? kAllPlaces : place.stars->reach();
+  const std::uint64_t samples =
+      floor_samples(floor.facts().shape, intersection(place.box, reach));
   if (!visitor.expect(samples)) {
     return false;
   }

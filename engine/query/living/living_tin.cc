@@ -34,10 +34,10 @@ void LivingTin::clear() {
 bool LivingTin::gather(const LivingPlace& place, std::uint64_t most_bytes, QueryContext& context) {
   clear();
   most_bytes_ = most_bytes;
-  const std::uint64_t before = context.cost.records_examined;
+  const std::uint64_t before = context.cost.examined();
   const bool fits = reader_.read(place, context, *this);
   add_waiting();
-  if (const std::uint64_t records = context.cost.records_examined - before; records > 0) {
+  if (const std::uint64_t records = context.cost.examined() - before; records > 0) {
     triangles_of_record_ =
         static_cast<double>(tin_.triangles.size()) / static_cast<double>(records);
   }

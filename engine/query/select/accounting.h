@@ -29,6 +29,9 @@ struct QueryCost {
   IoCounters io;
   double seconds = 0.0;  ///< Elapsed time of the answer.
 
+  /// Records, or samples of a raster, that were looked at.
+  [[nodiscard]] std::uint64_t examined() const noexcept { return records_examined + samples_read; }
+
   /// Adds the counts of a part of the answer. `seconds` is left alone: it is the time of the whole
   /// answer.
   void add_counts(const QueryCost& part) noexcept;
