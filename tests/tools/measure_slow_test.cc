@@ -271,9 +271,9 @@ TEST_F(Measured, AColdPointBringsLittleIntoTheCache) {
     for (std::uint64_t i = 0; i < 10; ++i) {
       ASSERT_EQ(cache.drop(), 0U);
       const Terrain terrain = opener.open(store_, way);
+      EXPECT_LE(cache.resident_bytes(), std::uint64_t{16} << 10) << name_of(way);
       ASSERT_NE(terrain.floor(), nullptr);  // its root comes with the first question, once
       const std::uint64_t front = cache.resident_bytes();
-      EXPECT_LE(front, std::uint64_t{16} << 10) << name_of(way);
       const Question q = questions->make(QuestionKind::kPoint, i, terrain);
       const Answer answer = questions->ask(q, terrain, {});
       const std::uint64_t asked = answer.cost.io.bytes_read;
