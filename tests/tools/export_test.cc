@@ -267,7 +267,7 @@ TEST(Export, NoticesAStoreThatIsReplacedOnTheWay) {
 TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
   const TestFolder folder;
   const Terrain terrain = Terrain::open(built(folder, "coast_257.tif"));
-  EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 20'000)), Error);
+  EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 500)), Error);
 }
 
 TEST(Export, WritesTheFirstVerticesAsRefineDoes) {
