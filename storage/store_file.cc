@@ -170,9 +170,11 @@ const Floor* StoreFile::floor() const {
   if (!front_->floor) {
     return nullptr;
   }
-  std::call_once(floor_once_, [this] {
+  // A lock, since a damaged root throws, and sanitizers lose track of a thread that throws out of std::call_once.
+  const std::scoped_lock lock(floor_mutex_);
+  if (floor_ == nullptr) {
     floor_ = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts);
-  });
+  }
   return floor_.get();
 }
 

@@ -159,7 +159,7 @@ class StoreFile {
   std::unique_ptr<DescribedPageStore> pages_;
   std::unique_ptr<PackedRTree> index_;
   std::unique_ptr<PointDirectory> directory_;
-  mutable std::once_flag floor_once_;
+  mutable std::mutex floor_mutex_;
   mutable std::unique_ptr<const Floor> floor_;  ///< Made when it is first asked for.
 };
 

@@ -27,6 +27,7 @@
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/construct/told_build.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -378,7 +379,7 @@ void expect_planned_output(const std::string& input) {
   EXPECT_GE(taken, (planned - (std::uint64_t{1} << 20)) * 85 / 100);  // a MiB is for small files
 }
 
-TEST(Build, PlansForTheOutputOfNoise) {
+TEST_IN_RELEASE(Build, PlansForTheOutputOfNoise) {
   std::mt19937_64 random(1);
   RasterFile file;
   file.columns = 400;

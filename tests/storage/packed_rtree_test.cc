@@ -16,6 +16,7 @@
 #include "storage/page_slots.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/storage/store_fixture.h"
+#include "tests/support/share_of_cases.h"
 
 namespace ptin::test {
 namespace {
@@ -141,7 +142,7 @@ TEST(SpatialIndexRTree, IsBuiltOnceAndAgainForAnotherStore) {
             (std::vector<std::string>{"a.ptin", "a.ptin.sidx.dat", "a.ptin.sidx.idx"}));
 }
 
-TEST(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThere) {
+TEST_IN_RELEASE(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThere) {
   const TestFolder folder, scratch;
   const std::string path = folder.file("a.ptin");
   RandomRecords options;

@@ -24,6 +24,7 @@
 #include "storage/verify.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/store_fixture.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin::test {
@@ -184,7 +185,7 @@ TEST(StoreWriter, TakesAtMost32BytesARecordOfSmallStars) {
   EXPECT_LT(std::filesystem::file_size(folder.file("a")), 32U * 50'000U);
 }
 
-TEST(StoreWriter, KeepsALongIndexInASideFile) {
+TEST_IN_RELEASE(StoreWriter, KeepsALongIndexInASideFile) {
   const TestFolder folder;
   RandomRecords options;
   options.segments = 4;

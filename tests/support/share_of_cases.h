@@ -52,3 +52,17 @@ inline std::vector<std::uint64_t> some_of_first(std::uint64_t count, std::size_t
 }
 
 }  // namespace ptin::test
+
+/// TEST and TEST_F of a case whose size, or the number of programs that it runs, is what it looks at. It is compiled but not run
+/// under the sanitizers, which see the same code in smaller cases.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TEST_IN_RELEASE(suite, name) [[maybe_unused]] static void suite##_##name##_in_release()
+#define TEST_F_IN_RELEASE(suite, name)               \
+  class suite##_##name##_in_release : public suite { \
+    void body();                                     \
+  };                                                 \
+  void suite##_##name##_in_release::body()
+#else
+#define TEST_IN_RELEASE(suite, name) TEST(suite, name)
+#define TEST_F_IN_RELEASE(suite, name) TEST_F(suite, name)
+#endif

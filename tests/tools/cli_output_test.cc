@@ -154,7 +154,7 @@ TEST(CliBadInput, OutputThatLeadsToStandardOutput) {
   }
 }
 
-TEST(CliBadInput, FullDisk) {
+TEST_IN_RELEASE(CliBadInput, FullDisk) {
   const TestFolder folder;
   const SmallDisk disk(folder.file("disk"), 1);
   if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 #include "tools/ptin/command.h"
@@ -49,7 +50,7 @@ TEST(Cli, EverySubcommandTakesTheCommonOptions) {
   }
 }
 
-TEST(Cli, ABuildIsSilentWhereItIsToBeQuiet) {
+TEST_IN_RELEASE(Cli, ABuildIsSilentWhereItIsToBeQuiet) {
   const TestFolder folder;
   for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
     const Outcome outcome = run_ptin({"build", test_data(name), "-o", folder.file(name), "-q"});

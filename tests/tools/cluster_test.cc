@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/mpi_run.h"
 
 namespace ptin::tools {
@@ -137,7 +138,7 @@ TEST_F(Ranks, WaitForOneThatWasStoppedForTwoSeconds) {
   EXPECT_TRUE(read_file(output) == expected_);
 }
 
-TEST(BuildWithoutMpi, RefusesToBeStartedByMpirun) {
+TEST_IN_RELEASE(BuildWithoutMpi, RefusesToBeStartedByMpirun) {
 #ifdef PTIN_MPI
   GTEST_SKIP() << "needs a program without MPI";
 #endif
@@ -236,7 +237,7 @@ TEST_F(BuildPartCommand, RefusesPhasesOutOfTheirOrder) {
       << early.err;
 }
 
-TEST_F(BuildPartCommand, IsRunByGnuParallel) {
+TEST_F_IN_RELEASE(BuildPartCommand, IsRunByGnuParallel) {
   plan(3);
   try {
     const Outcome outcome =
@@ -277,7 +278,7 @@ touch "$folder/job-$number"
 echo "$number;cluster"
 )";
 
-TEST_F(BuildPartCommand, IsSubmittedToSlurm) {
+TEST_F_IN_RELEASE(BuildPartCommand, IsSubmittedToSlurm) {
   plan(3);
   const TestFolder bin;
   testing::write_file(bin.file("sbatch"), kSbatch);

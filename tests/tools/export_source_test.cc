@@ -19,6 +19,7 @@
 
 #include "storage/floor.h"
 #include "storage/store_file.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tests/tools/refusal.h"
 #include "tests/tools/whole_raster.h"
@@ -119,7 +120,8 @@ double with_voids(int x, int y, double void_value) {
 }
 
 TEST_F(ExportSource, GivesEveryTypeBack) {
-  for (const char* type : {"UInt16", "Int16", "UInt32", "Int32", "Float32", "Float64"}) {
+  for (const char* type :
+       test::some_of({"UInt16", "Int16", "UInt32", "Int32", "Float32", "Float64"})) {
     Recipe recipe;
     recipe.type = type;
     expect_back(recipe);
@@ -148,7 +150,7 @@ TEST_F(ExportSource, GivesBytesOfEitherSignBack) {
 
 TEST_F(ExportSource, GivesNumbersBackThatAreNoWholeOnes) {
   Recipe recipe;
-  for (const char* type : {"Float32", "Float64"}) {
+  for (const char* type : test::some_of({"Float32", "Float64"})) {
     recipe.type = type;
     // Float32 of steps, of none, and NaN for voids, declared or not.
     recipe.value = [](int x, int y) { return static_cast<float>(hills(x, y) / 10); };

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -136,7 +137,7 @@ class JsonNames : public ::testing::Test {
   std::map<std::string, Names> printed;
 };
 
-TEST_F(JsonNames, AreThoseOfTheLists) {
+TEST_F_IN_RELEASE(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
   ask({"build", file("dem.tif"), "-o", store, "-q"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tools/facts/human.h"
 #include "tools/facts/quantity.h"
@@ -157,7 +158,7 @@ AnswerAndFile answer_and_file(Spoken words, const std::string& option, const std
   return told;
 }
 
-TEST_F(Measured, AllLengthsAndHeightsTakeUnits) {
+TEST_F_IN_RELEASE(Measured, AllLengthsAndHeightsTakeUnits) {
   const std::string feet = built("feet", 2913, "foot");
   expect_done({"stream", feet, "-o", file("sent.pts"), "-q"});
   const std::map<std::string, AskedWith> questions = questions_of(feet, folder_);

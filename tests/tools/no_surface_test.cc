@@ -59,7 +59,7 @@ class NoSurface : public ::testing::Test {
   TestFolder folder_;
 };
 
-TEST_F(NoSurface, BuildAndEveryQuestionWarn) {
+TEST_F_IN_RELEASE(NoSurface, BuildAndEveryQuestionWarn) {
   using Pixels = std::vector<std::array<int, 2>>;
   for (const Pixels& pixels : test::some_of({Pixels{}, Pixels{{5, 5}}, Pixels{{5, 5}, {12, 9}}})) {
     const Outcome built = build(pixels);

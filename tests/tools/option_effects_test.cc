@@ -17,6 +17,7 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -275,7 +276,7 @@ TEST_F(BuildThreads, AreThoseOfTheAffinity) {
 
 using BuildTmp = Options;
 
-TEST_F(BuildTmp, IsWhereTemporaryFilesGo) {
+TEST_F_IN_RELEASE(BuildTmp, IsWhereTemporaryFilesGo) {
   const TestFolder tmp;
   const Watch watch(tmp.path().string());
   for (const char* name : {"mountains_257.tif", "ground_points.csv"}) {

@@ -22,7 +22,7 @@ namespace {
 
 /// One file, and where its pixels are on the grid: x = first_x + x_step * column, y = first_y +
 /// y_step * row.
-struct RasterFile {
+struct SampledRaster {
   std::string path;
   std::unique_ptr<GDALDataset> data;
   std::int64_t first_x = 0;
@@ -48,11 +48,11 @@ struct RasterFile {
 
 class RasterSamples final : public SourceSamples {
  public:
-  RasterSamples(std::vector<RasterFile> files, const StoreFile& store)
+  RasterSamples(std::vector<SampledRaster> files, const StoreFile& store)
       : files_(std::move(files)), choices_(choices_of(store)) {
     SourceExtent extent;
     std::vector<std::string> paths;
-    for (RasterFile& file : files_) {
+    for (SampledRaster& file : files_) {
       place(file, store.facts());
       extent.add(static_cast<double>(file.low_x()), static_cast<double>(file.low_y()));
       extent.add(static_cast<double>(file.high_x()), static_cast<double>(file.high_y()));
@@ -68,10 +68,10 @@ class RasterSamples final : public SourceSamples {
   }
 
  private:
-  static void place(RasterFile& file, const StoreFacts& facts);
-  void read_file(RasterFile& file, SampleWindow& window) const;
+  static void place(SampledRaster& file, const StoreFacts& facts);
+  void read_file(SampledRaster& file, SampleWindow& window) const;
 
-  std::vector<RasterFile> files_;
+  std::vector<SampledRaster> files_;
   SampleChoices choices_;
 };
 
@@ -79,7 +79,7 @@ double last_place(double v) { return std::nextafter(std::abs(v), HUGE_VAL) - std
 
 /// Finds where the pixels of a file stand on the grid, and refuses a file where they do not stand
 /// on it.
-void RasterSamples::place(RasterFile& file, const StoreFacts& facts) {
+void RasterSamples::place(SampledRaster& file, const StoreFacts& facts) {
   std::array<double, 6> t{0, 1, 0, 0, 0, -1};
   // A geotransform that says nothing counts as none; it is what GDAL gives for none, but for a VRT, in
   // which one is written or none.
@@ -157,11 +157,11 @@ SampleWindow RasterSamples::read(const GridBox& box) {
     for (std::int32_t x = box.min_x; x <= box.max_x; ++x)
       window.samples.push_back({x, y, 0.0, true});
   }
-  for (RasterFile& file : files_) read_file(file, window);
+  for (SampledRaster& file : files_) read_file(file, window);
   return window;
 }
 
-void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
+void RasterSamples::read_file(SampledRaster& file, SampleWindow& window) const {
   const GridBox& box = window.box;
   const std::int64_t low_x = std::max<std::int64_t>(box.min_x, file.low_x());
   const std::int64_t high_x = std::min<std::int64_t>(box.max_x, file.high_x());
@@ -221,7 +221,7 @@ void RasterSamples::read_file(RasterFile& file, SampleWindow& window) const {
 }
 
 /// One of two bands may be alpha.
-void choose_bands(RasterFile& file) {
+void choose_bands(SampledRaster& file) {
   file.heights = file.data->GetRasterBand(1);
   if (file.data->GetRasterCount() == 2) {
     GDALRasterBand* second = file.data->GetRasterBand(2);
@@ -246,9 +246,9 @@ void choose_bands(RasterFile& file) {
 
 std::unique_ptr<SourceSamples> open_raster_samples(const std::vector<std::string>& paths,
                                                    const StoreFile& store) {
-  std::vector<RasterFile> files;
+  std::vector<SampledRaster> files;
   for (const std::string& path : paths) {
-    RasterFile file;
+    SampledRaster file;
     file.path = path;
     file.data.reset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr,
                                       nullptr, nullptr));

@@ -148,7 +148,7 @@ Crs describe(OGRSpatialReference srs) {
 }
 
 /// The beginning of a text, on one line.
-std::string quoted(const std::string& text) {
+std::string in_quotes(const std::string& text) {
   std::string line = text.substr(0, 80);
   std::replace_if(
       line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
@@ -181,7 +181,7 @@ class OwnCrs {
     // A compound CRS shows what a vertical one is: any other part in plan does.
     const Crs with_any_plane = resolve_crs("EPSG:32631", "", declared_.vertical_crs);
     warn("crs_vertical_alone",
-         "it names the vertical CRS " + quoted(declared_.vertical_crs) +
+         "it names the vertical CRS " + in_quotes(declared_.vertical_crs) +
              " and no horizontal one; the unit of its heights is kept, and the terrain has no CRS; "
              "name both by --a-srs and --vertical-crs");
     Crs crs;
@@ -197,7 +197,7 @@ class OwnCrs {
     const GdalSession session;
     OGRSpatialReference srs;
     if (!text.empty() && !read(text, srs)) {
-      warn("crs_not_understood", "its " + what + ", " + quoted(text) +
+      warn("crs_not_understood", "its " + what + ", " + in_quotes(text) +
                                      ", is not one that GDAL understands; the terrain is without "
                                      "it; " +
                                      cure);
@@ -274,7 +274,7 @@ std::string name_in_plan(const DeclaredTexts& declared) {
     return "no CRS";
   }
   if (!is_crs(declared.crs)) {
-    return quoted(declared.crs);
+    return in_quotes(declared.crs);
   }
   const CrsFacts facts = crs_facts(resolve_crs(declared.crs, "", "").wkt);
   return with_code(facts.name, facts.code);
@@ -283,7 +283,7 @@ std::string name_in_plan(const DeclaredTexts& declared) {
 std::string name_of_vertical(const DeclaredTexts& declared) {
   const bool is_apart = !declared.vertical_crs.empty();
   if (is_apart ? !is_vertical_crs(declared.vertical_crs) : !is_crs(declared.crs)) {
-    return is_apart ? quoted(declared.vertical_crs) : "no vertical CRS";
+    return is_apart ? in_quotes(declared.vertical_crs) : "no vertical CRS";
   }
   // A compound CRS shows what a vertical one is: any other part in plan does.
   const Crs crs = is_apart ? resolve_crs("EPSG:32631", "", declared.vertical_crs)

@@ -12,10 +12,8 @@ namespace ptin {
 
 namespace {
 
-using nlohmann::json;
-
 /// A value as a command line has it.
-std::string told(const json& value) {
+std::string told(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "given" : "not given";
   if (value.is_null()) return "not given";
@@ -24,7 +22,7 @@ std::string told(const json& value) {
     return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
   }
   std::string all;
-  for (const json& one : value) all += (all.empty() ? "" : " ") + told(one);
+  for (const nlohmann::json& one : value) all += (all.empty() ? "" : " ") + told(one);
   return all.empty() ? "not given" : all;
 }
 
@@ -36,17 +34,18 @@ std::string option_of(const std::string& key) {
 
 class Differences {
  public:
-  Differences(const json& then, const json& now) {
+  Differences(const nlohmann::json& then, const nlohmann::json& now) {
     if (!then.is_object() || !then.contains("options") || !then.contains("inputs")) {
       add("it was begun by another version of ptin");
       return;
     }
-    compare_programs(then.value("program", json()), now.value("program", json()));
-    compare_options(then.at("options"), now.value("options", json::object()));
-    if (then.value("page_bytes", json()) != now.value("page_bytes", json()))
-      add("pages had " + told(then.value("page_bytes", json())) + " bytes and have " +
-          told(now.value("page_bytes", json())));
-    compare_inputs(then.at("inputs"), now.value("inputs", json::array()));
+    compare_programs(then.value("program", nlohmann::json()),
+                     now.value("program", nlohmann::json()));
+    compare_options(then.at("options"), now.value("options", nlohmann::json::object()));
+    if (then.value("page_bytes", nlohmann::json()) != now.value("page_bytes", nlohmann::json()))
+      add("pages had " + told(then.value("page_bytes", nlohmann::json())) + " bytes and have " +
+          told(now.value("page_bytes", nlohmann::json())));
+    compare_inputs(then.at("inputs"), now.value("inputs", nlohmann::json::array()));
   }
 
   [[nodiscard]] std::string text() const {
@@ -61,9 +60,9 @@ class Differences {
  private:
   void add(std::string difference) { all_.push_back(std::move(difference)); }
 
-  void compare_programs(const json& then, const json& now) {
+  void compare_programs(const nlohmann::json& then, const nlohmann::json& now) {
     if (then == now) return;
-    const auto version = [](const json& program) {
+    const auto version = [](const nlohmann::json& program) {
       return program.is_array() && !program.empty() ? told(program[0]) : std::string("unknown");
     };
     const bool is_same = version(then) == version(now);
@@ -72,22 +71,23 @@ class Differences {
                 : "it was begun by ptin " + version(then) + ", and this is " + version(now));
   }
 
-  void compare_options(const json& then, const json& now) {
+  void compare_options(const nlohmann::json& then, const nlohmann::json& now) {
     std::set<std::string> keys;
-    for (const json* options : {&then, &now}) {
+    for (const nlohmann::json* options : {&then, &now}) {
       for (const auto& [key, value] : options->items()) keys.insert(key);
     }
     for (const std::string& key : keys) {
-      const json before = then.value(key, json()), after = now.value(key, json());
+      const nlohmann::json before = then.value(key, nlohmann::json()),
+                           after = now.value(key, nlohmann::json());
       if (before == after) continue;
       add(option_of(key) + " was " + told(before) + " and is " + told(after));
     }
   }
 
-  void compare_inputs(const json& then, const json& now) {
-    const auto names_of = [](const json& inputs) {
+  void compare_inputs(const nlohmann::json& then, const nlohmann::json& now) {
+    const auto names_of = [](const nlohmann::json& inputs) {
       std::vector<std::string> names;
-      for (const json& input : inputs) names.push_back(told(input.at(0)));
+      for (const nlohmann::json& input : inputs) names.push_back(told(input.at(0)));
       return names;
     };
     std::vector<std::string> before = names_of(then), after = names_of(now);
@@ -107,12 +107,13 @@ class Differences {
   }
 
   /// Files of inputs that are named by both builds.
-  void compare_files(const json& then, const json& now) {
-    for (const json& input : now) {
-      const auto same = std::find_if(then.begin(), then.end(),
-                                     [&](const json& other) { return other.at(0) == input.at(0); });
+  void compare_files(const nlohmann::json& then, const nlohmann::json& now) {
+    for (const nlohmann::json& input : now) {
+      const auto same = std::find_if(then.begin(), then.end(), [&](const nlohmann::json& other) {
+        return other.at(0) == input.at(0);
+      });
       if (same == then.end() || same->at(1) == input.at(1)) continue;
-      const std::map<std::string, json> before = files_of(*same), after = files_of(input);
+      const std::map<std::string, nlohmann::json> before = files_of(*same), after = files_of(input);
       for (const auto& [name, facts] : before) {
         const auto found = after.find(name);
         if (found == after.end()) {
@@ -128,9 +129,9 @@ class Differences {
       }
     }
   }
-  static std::map<std::string, json> files_of(const json& input) {
-    std::map<std::string, json> files;
-    for (const json& file : input.at(1)) files.emplace(told(file.at(0)), file);
+  static std::map<std::string, nlohmann::json> files_of(const nlohmann::json& input) {
+    std::map<std::string, nlohmann::json> files;
+    for (const nlohmann::json& file : input.at(1)) files.emplace(told(file.at(0)), file);
     return files;
   }
 
@@ -139,10 +140,11 @@ class Differences {
 
 }  // namespace
 
-std::string what_differs(const json& begun_with, const json& now) {
+std::string what_differs(const nlohmann::json& begun_with, const nlohmann::json& now) {
   try {
     return Differences(begun_with, now).text();
-  } catch (const json::exception&) {  // It has the parts that ours have, and other things in them.
+  } catch (const nlohmann::json::
+               exception&) {  // It has the parts that ours have, and other things in them.
     return "it was begun by another version of ptin";
   }
 }

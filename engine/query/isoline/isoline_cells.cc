@@ -33,61 +33,55 @@ void CellLines::take(const RasterSquare& square, const HeightEncoding& heights) 
     }
     has_height_[y] = row;
   }
-  find_diagonals(heights);
-  find_surface();
+  heights_ = &heights;
+  is_cut_.fill(0);
+  falling_.fill(0);
+  wanted_.fill({});
   crossed_once_.fill({});
 }
 
-void CellLines::find_diagonals(const HeightEncoding& heights) {
-  std::array<double, kMostSamples> low{}, high{};
-  const auto decode = [&](std::uint32_t y, std::array<double, kMostSamples>& row) {
-    const std::uint32_t* const from = &square_.heights[std::size_t{y} * square_.width];
-    for (std::uint32_t x = 0; x < square_.width; ++x) {
-      row[x] = heights.code(height_of_ordered(from[x], heights.type));
-    }
-  };
-  decode(0, low);
-  for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
-    decode(y + 1, high);
-    Row falling = 0;
-    for (std::uint32_t x = 0; x + 1 < square_.width; ++x) {
-      const auto has = [&](const Row& row, std::uint32_t at) {
-        return static_cast<std::uint8_t>(row >> at & 1);
-      };
-      const RasterCell cell{{low[x], low[x + 1], high[x + 1], high[x]},
-                            {has(has_height_[y], x), has(has_height_[y], x + 1),
-                             has(has_height_[y + 1], x + 1), has(has_height_[y + 1], x)}};
-      const GridPoint at{square_.first.x + static_cast<std::int32_t>(x),
-                         square_.first.y + static_cast<std::int32_t>(y)};
-      falling |= Row{cell_diagonal(cell, at) == Diagonal::kFalling} << x;
-    }
-    falling_[y] = falling;
-    low = high;
-  }
-}
-
-void CellLines::find_surface() {
-  const Row cells = ones(square_.width - 1);
-  for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
-    const Row a = has_height_[y], b = a >> 1, d = has_height_[y + 1], c = d >> 1;
-    const Row falling = falling_[y];
-    wanted_[y] = {a & b & ((falling & d) | (~falling & c)) & cells,
-                  c & d & ((falling & b) | (~falling & a)) & cells};
-  }
-}
-
-std::size_t CellLines::find_crossed(std::uint64_t least_above) {
+void CellLines::find_mixed(std::uint64_t least_above) {
   for (std::uint32_t y = 0; y < square_.height; ++y) {
     const std::uint32_t* const from = &square_.heights[std::size_t{y} * square_.width];
     Row row = 0;
     for (std::uint32_t x = 0; x < square_.width; ++x) row |= Row{from[x] >= least_above} << x;
     above_[y] = row;
   }
+  const Row cells = ones(square_.width - 1);
+  for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
+    const Row a = above_[y], b = a >> 1, d = above_[y + 1], c = d >> 1;
+    mixed_[y] = ((a ^ b) | (a ^ c) | (a ^ d)) & cells;
+  }
+}
+
+void CellLines::cut_cell(std::uint32_t x, std::uint32_t y) {
+  RasterCell cell{};
+  for (std::uint32_t number = 0; number < 4; ++number) {
+    const std::uint32_t column = x + (number == 1 || number == 2 ? 1 : 0), row = y + (number >> 1);
+    const std::uint32_t height = square_.heights[std::size_t{row} * square_.width + column];
+    cell.code[number] = heights_->code(height_of_ordered(height, heights_->type));
+    cell.has_height[number] = static_cast<std::uint8_t>(has_height_[row] >> column & 1);
+  }
+  const GridPoint at{square_.first.x + static_cast<std::int32_t>(x),
+                     square_.first.y + static_cast<std::int32_t>(y)};
+  const Diagonal diagonal = cell_diagonal(cell, at);
+  falling_[y] |= Row{diagonal == Diagonal::kFalling} << x;
+  const CellTriangles triangles = cell_triangles(diagonal);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [a, b, c] = triangles[i];
+    const bool is_surface = (cell.has_height[a] & cell.has_height[b] & cell.has_height[c]) != 0;
+    wanted_[y][i] |= Row{is_surface} << x;
+  }
+  is_cut_[y] |= Row{1} << x;
+}
+
+std::size_t CellLines::count_crossed() {
   std::size_t count = 0;
   for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
     const Row a = above_[y], b = a >> 1, d = above_[y + 1], c = d >> 1;
     const Row falling = falling_[y];
-    // A triangle is crossed where a third corner is on another side than one of its other two.
+    // A triangle is crossed where a third corner is on another side than one of its other two. Cells that are not
+    // cut are not mixed, and none of their triangles is wanted.
     const Row first = (a ^ b) | (falling & (a ^ d)) | (~falling & (a ^ c));
     const Row second = (c ^ d) | (falling & (b ^ c)) | (~falling & (a ^ c));
     crossed_[y] = {first & wanted_[y][0], second & wanted_[y][1]};

@@ -25,22 +25,21 @@ class CellLines {
     std::uint32_t height;  ///< Ordered.
   };
 
-  /// Takes a square: all of its surface triangles are wanted.
-  /// @param square  Borrowed for the life of what is asked. Two to kMostSamples samples a side.
+  /// Takes a square.
+  /// @param square, heights  Borrowed for the life of what is asked. Two to kMostSamples samples a side.
   void take(const RasterSquare& square, const HeightEncoding& heights);
 
   /// The least and the greatest height; least > greatest: all is void.
   [[nodiscard]] std::uint32_t least() const noexcept { return least_; }
   [[nodiscard]] std::uint32_t greatest() const noexcept { return greatest_; }
 
-  /// Leaves out the triangles for which wants(corner, corner, corner) is false.
-  template <class Wants>
-  void keep_if(const Wants& wants);
-
   /// Looks which triangles a level crosses.
   /// @param least_above  The least height that is above it.
+  /// @param wants        wants(corner, corner, corner) says whether a triangle of the surface is wanted at all;
+  ///                     it is asked once for each that a level may cross, and must not change until take().
   /// @return How many.
-  std::size_t find_crossed(std::uint64_t least_above);
+  template <class Wants>
+  std::size_t find_crossed(std::uint64_t least_above, const Wants& wants);
   /// Follows that level's lines through them, once: begin(below, above) at the edge by which a line comes, and
   /// extend(below, above) at each by which it leaves a triangle.
   template <class Begin, class Extend>
@@ -75,31 +74,43 @@ class CellLines {
                               std::uint32_t number) const noexcept {
     return (above_[y + (number >> 1)] >> (x + (number == 1 || number == 2 ? 1 : 0)) & 1) != 0;
   }
-  void find_diagonals(const HeightEncoding& heights);
-  void find_surface();
+  /// Looks which samples the level is not above, and which cells have some of both.
+  void find_mixed(std::uint64_t least_above);
+  /// Finds the diagonal of a cell, and which of its triangles are surface.
+  void cut_cell(std::uint32_t x, std::uint32_t y);
+  [[nodiscard]] std::size_t count_crossed();
 
   static constexpr std::array<CellTriangles, 2> kCells{cell_triangles(Diagonal::kRising),
                                                        cell_triangles(Diagonal::kFalling)};
 
   RasterSquare square_;
+  const HeightEncoding* heights_ = nullptr;
   std::uint32_t least_ = UINT32_MAX, greatest_ = 0;
-  std::array<Row, kMostSamples> above_{}, has_height_{}, falling_{};
+  std::array<Row, kMostSamples> above_{}, has_height_{}, mixed_{};
+  /// Cells are cut when a level comes to them, since levels pass few of all cells: `falling_` and `wanted_` hold
+  /// for those.
+  std::array<Row, kMostSamples> is_cut_{}, falling_{};
   std::array<Pair, kMostSamples> wanted_{}, crossed_{}, crossed_once_{};
 };
 
 template <class Wants>
-void CellLines::keep_if(const Wants& wants) {
+std::size_t CellLines::find_crossed(std::uint64_t least_above, const Wants& wants) {
+  find_mixed(least_above);
   for (std::uint32_t y = 0; y + 1 < square_.height; ++y) {
-    for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
-      for (Row left = wanted_[y][triangle]; left != 0; left &= left - 1) {
-        const At at{static_cast<std::uint32_t>(std::countr_zero(left)), y, triangle, 0, 0};
+    for (Row left = mixed_[y] & ~is_cut_[y]; left != 0; left &= left - 1) {
+      const auto x = static_cast<std::uint32_t>(std::countr_zero(left));
+      cut_cell(x, y);
+      for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
+        const At at{x, y, triangle, 0, 0};
         const auto& [a, b, c] = triangle_of(at);
-        if (!wants(corner(at, a).position, corner(at, b).position, corner(at, c).position)) {
-          wanted_[y][triangle] &= ~(Row{1} << at.x);
+        if ((wanted_[y][triangle] >> x & 1) != 0 &&
+            !wants(corner(at, a).position, corner(at, b).position, corner(at, c).position)) {
+          wanted_[y][triangle] &= ~(Row{1} << x);
         }
       }
     }
   }
+  return count_crossed();
 }
 
 template <class Begin, class Extend>

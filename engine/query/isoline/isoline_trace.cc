@@ -72,15 +72,21 @@ bool LineTracer::add(const RasterSquare& square) {
   if (level == levels_.size() || levels_.least_above(level) > cells_.greatest()) {
     return true;
   }
-  cells_.keep_if([&](GridPoint a, GridPoint b, GridPoint c) {
-    return is_in_tile(scope_.tile, a, b, c) &&
-           (scope_.region == nullptr || scope_.region->meets(a, b, c));
-  });
+  // Most squares lie within a tile whole, and need no look at each triangle.
+  const bool is_whole =
+      scope_.region == nullptr && contains(scope_.tile, square.first) &&
+      contains(scope_.tile,
+               GridPoint{square.first.x + static_cast<std::int32_t>(square.width) - 1,
+                         square.first.y + static_cast<std::int32_t>(square.height) - 1});
+  const auto wants = [&](GridPoint a, GridPoint b, GridPoint c) {
+    return is_whole || (is_in_tile(scope_.tile, a, b, c) &&
+                        (scope_.region == nullptr || scope_.region->meets(a, b, c)));
+  };
   for (; level < levels_.size() && levels_.least_above(level) <= cells_.greatest(); ++level) {
     if (batch_.size() >= kBatch) {
       join_batch();
     }
-    const std::size_t segments = cells_.find_crossed(levels_.least_above(level));
+    const std::size_t segments = cells_.find_crossed(levels_.least_above(level), wants);
     if (!has_room(segments)) {
       return false;
     }

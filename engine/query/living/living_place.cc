@@ -115,8 +115,7 @@ bool LivingReader::read_floor(const Floor& floor, const LivingPlace& place, Quer
   };
   wish.take_cells = [&](const RasterSquare& square) { return visitor.take_cells(square); };
   const GridBox reach = place.stars == nullptr ? kAllPlaces : place.stars->reach();
-  const std::uint64_t samples =
-      floor_samples(floor.facts().shape, intersection(place.box, reach));
+  const std::uint64_t samples = floor_samples(floor.facts().shape, intersection(place.box, reach));
   if (!visitor.expect(samples)) {
     return false;
   }

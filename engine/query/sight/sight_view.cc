@@ -7,7 +7,7 @@ namespace ptin {
 
 namespace {
 
-LinePoint point_of(const Tin& tin, const HeightEncoding& heights, const Crossing& c) {
+LinePoint line_point_of(const Tin& tin, const HeightEncoding& heights, const Crossing& c) {
   return {codes_at(tin, heights, c.footing), c.numerator, c.denominator};
 }
 
@@ -137,8 +137,8 @@ void SightView::decide_exactly_all(const BoundedSurface& mesh) {
   for (std::size_t i = 0; i < pieces.size() && walk.next(); ++i) {
     const LinePiece& piece = walk.piece();
     if (pieces[i].surface) {
-      decide_exactly(pieces[i], point_of(tin, facts().heights, piece.from),
-                     point_of(tin, facts().heights, piece.to));
+      decide_exactly(pieces[i], line_point_of(tin, facts().heights, piece.from),
+                     line_point_of(tin, facts().heights, piece.to));
     } else if (pieces[i].settled) {
       check_touch(mesh, piece.from);
       check_touch(mesh, piece.to);
@@ -155,7 +155,7 @@ void SightView::check_touch(const BoundedSurface& mesh, const Crossing& c) {
     take_open_touch(c.share());
     return;
   }
-  const LinePoint at = point_of(tin, facts().heights, c);
+  const LinePoint at = line_point_of(tin, facts().heights, c);
   bool touches = false;
   if (c.footing.lies() == Lies::kOnVertex) {
     touches = touches_surface(tin, c.footing.vertex[0]);

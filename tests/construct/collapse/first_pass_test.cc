@@ -303,7 +303,7 @@ void check_build(const RasterSpec& spec, std::int64_t side) {
 
 /// Leaves thin their common sides where squares of right triangles fit them, 64 samples and more;
 /// else they keep all samples of sides, and squares leave a rest in each leaf: 48.
-TEST(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
+TEST_IN_RELEASE(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
   for (RasterSpec spec : test::some_of(specs())) {
     spec.origin = {};
     check_build(spec, 48);

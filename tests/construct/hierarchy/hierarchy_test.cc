@@ -185,7 +185,7 @@ TestTerrain hills(int size, unsigned seed, bool voids) {
   return oracle::make_raster(spec);
 }
 
-TEST(Hierarchy, KeepsEveryPromiseOverSixBySixTiles) {
+TEST_IN_RELEASE(Hierarchy, KeepsEveryPromiseOverSixBySixTiles) {
   for (const bool voids : test::some_of({false, true})) {
     EXPECT_EQ(check_tiled(hills(97, voids ? 2 : 1, voids), 16), "");
   }
@@ -286,7 +286,7 @@ TEST(Hierarchy, RetrievesHardlyMoreRecordsThanOneTile) {
   }
 }
 
-TEST(Hierarchy, ChainsDoNotGrowWithTheNumberOfTiles) {
+TEST_IN_RELEASE(Hierarchy, ChainsDoNotGrowWithTheNumberOfTiles) {
   const TestTerrain terrain = hills(kSamplesAlong, 4, false);
   const int whole = highest_rank(build_tiled(terrain, 1000));
   // 47 as one tile; 48, 47 and 53 in 4, 16 and 64 tiles.

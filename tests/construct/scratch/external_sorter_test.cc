@@ -12,6 +12,8 @@
 #include <malloc.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/support/share_of_cases.h"
+
 namespace ptin {
 namespace {
 
@@ -63,7 +65,7 @@ constexpr std::size_t kLeast = Sorter::kLeastRecords;
 constexpr std::size_t kRun = kLeast - Sorter::kBatch;
 constexpr std::size_t kWidest = kRun / Sorter::kLeastOfRun;
 
-TEST(ExternalSorter, MergesNoMoreRunsThanItsMemoryHolds) {
+TEST_IN_RELEASE(ExternalSorter, MergesNoMoreRunsThanItsMemoryHolds) {
   const std::size_t count = 1'500'000;  // runs of three levels
   const SortCounts counts = expect_sorted(numbers(count, 2), 1);
   EXPECT_GE(counts.runs, count / kRun);

@@ -154,9 +154,10 @@ TEST(Locate, AnswersByHeightsAndStarsAsBySplits) {
                                         {"coast_257.tif", 1.0}}) {
     const Terrain& terrain = reference::built_terrain(name, max_error);
     const std::vector<MapPoint> points = random_points(terrain.store().facts(), 4000, 5);
-    std::vector<DetailRequest> levels(1);
+    std::vector<DetailRequest> levels;
     for (const double error : {0.0, 0.7, 5.0, 21.3, 1e5}) levels.push_back({error, {}});
     for (const std::uint64_t vertices : {4, 50, 3000, 20001}) levels.push_back({{}, vertices});
+    levels.emplace_back();  // all detail
     for (const DetailRequest& level : test::some_of(levels)) {
       SCOPED_TRACE(testing::Message() << name << " at " << level.tolerance.value_or(-1.0) << ", "
                                       << level.vertices.value_or(0));

@@ -15,6 +15,7 @@
 #include "engine/construct/build.h"
 #include "engine/error.h"
 #include "tests/query/built_terrain.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
@@ -83,7 +84,7 @@ TEST(AllWays, AnswerTheSameOfRealRasters) {
   }
 }
 
-TEST(Heights, AreReadInFewPagesNodesAndRounds) {
+TEST_IN_RELEASE(Heights, AreReadInFewPagesNodesAndRounds) {
   for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
     SCOPED_TRACE(name);
     reference::expect_few_reads(reference::built_terrain(name), 2);

@@ -21,6 +21,7 @@
 #include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
+#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
@@ -135,7 +136,7 @@ RC_GTEST_PROP(FloorPixels, AreThoseOfStars, (std::uint64_t seed)) {
   }
 }
 
-TEST(FloorPixels, ReadNoPagesOfStarsWhereTheyAreSamples) {
+TEST_IN_RELEASE(FloorPixels, ReadNoPagesOfStarsWhereTheyAreSamples) {
   for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
     const Terrain& terrain = reference::built_terrain(name);
     ASSERT_NE(terrain.floor(), nullptr);

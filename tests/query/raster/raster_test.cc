@@ -367,7 +367,7 @@ TEST(Raster, RefusesWhatMeansNothing) {
       ErrorCode::resource_exhausted);
 }
 
-TEST(Raster, OfAnySizeIsHandedOverInBlocks) {
+TEST_IN_RELEASE(Raster, OfAnySizeIsHandedOverInBlocks) {
   const Terrain& terrain = reference::built_terrain("mountains_257.tif");
   // Sizes whose bytes, and twice these, are small numbers when they wrap around.
   for (const std::int64_t height : {std::int64_t{1} << 30, std::int64_t{1'908'874'354}}) {
