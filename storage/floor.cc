@@ -2,7 +2,6 @@
 #include "storage/floor.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "engine/error.h"
@@ -11,22 +10,8 @@
 
 namespace ptin {
 
-namespace {
-
-/// Of a far file the root comes together with the first nodes below it: in most files with all.
-void announce_nodes(const ReadableFile& file, const FloorPlace& place) {
-  constexpr std::uint64_t kMostBytes = 15 * layout::kNodeBytes;
-  if (!file.is_far()) return;
-  const std::array ranges{ByteRange{place.root, layout::kNodeBytes},
-                          ByteRange{place.nodes.offset, std::min(place.nodes.bytes, kMostBytes)}};
-  file.will_need(ranges);
-}
-
-}  // namespace
-
 Floor::Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts& store)
     : file_(file), place_(place), heights_(store.heights), numbers_(store.heights, 0.0) {
-  announce_nodes(file_, place_);
   file_.read_at(std::as_writable_bytes(std::span(&root_, 1)), place_.root);
   if (checksum_of_object(root_) != place_.root_checksum) {
     damaged("the root above the heights does not match its checksum; the file is damaged");

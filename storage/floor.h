@@ -42,11 +42,15 @@ struct FloorPlace {
 /// read at the making and stays in memory. Threads: const functions may be called at once.
 class Floor {
  public:
-  /// What a question has read lately, and so does not read again, nor count: parts of a line, or of a
-  /// place, share pages. A value of its caller's. Memory: 4 KiB for each of at most 80 nodes and pages.
+  /// What a question has read lately of one floor, and so does not read again, nor count: parts of a line,
+  /// or of a place, share pages. A value of its caller's, which stays where it is. While a visit goes on
+  /// nothing else may read with it. Memory: 4 KiB for each of at most 80 nodes and pages.
   /// Threads: one owner.
   class Recent {
    public:
+    Recent() = default;
+    Recent(const Recent&) = delete;
+    Recent& operator=(const Recent&) = delete;
     /// The page that was looked at last.
     [[nodiscard]] std::uint64_t page() const noexcept { return last_->number; }
 

@@ -53,9 +53,8 @@ bool is_wanted(const Merit& merit, const Merit& cut_off) noexcept {
 /// and of those that are large for a window the quarters tell more.
 class EntriesOfNode {
  public:
-  using Heights = FloorBounds;
   /// @param end    Key behind the node's tiles.
-  /// @param merit  merit(square's tiles, least, greatest height) of what lies there.
+  /// @param merit_of  merit_of(tiles of a square, bounds of their heights): an upper bound of what is there.
   template <class MeritOf>
   EntriesOfNode(const FloorShape& shape, const layout::FloorNode& node, std::uint64_t end,
                 Merit cut_off, const MeritOf& merit_of)
@@ -83,10 +82,9 @@ class EntriesOfNode {
     while (low < high && begin_of(high - 1) >= square.end()) --high;
     const std::optional<TileRange> tiles = low < high ? square.tiles(shape_) : std::nullopt;
     if (!tiles) return;
-    Heights heights{UINT32_MAX, 0};
+    FloorBounds heights;
     for (std::size_t i = low; i < high; ++i) {
-      heights = {std::min(heights.least, node_.entry[i].least),
-                 std::max(heights.greatest, node_.entry[i].greatest)};
+      heights.join({node_.entry[i].least, node_.entry[i].greatest});
     }
     const Merit merit = merit_of(*tiles, heights);
     if (!is_wanted(merit, cut_off_)) return;

@@ -74,8 +74,8 @@ enum class SectionKind : std::uint32_t {
   kPages = 6,
   kDirectory = 7,       ///< Both or none.
   kDirectoryNodes = 8,  ///< Kept between the index and the pages.
-  kFloorRoot = 9,       ///< All three or none, behind the pages.
-  kFloorNodes = 10,     ///< Those below the root.
+  kFloorRoot = 9,       ///< All three or none. Kept before the index, which comes at the opening.
+  kFloorNodes = 10,     ///< Those below the root. Kept behind the pages, as the next.
   kFloorPages = 11,
 };
 

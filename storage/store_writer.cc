@@ -58,8 +58,9 @@ class Front {
   explicit Front(std::size_t sections)
       : bytes_(sizeof(layout::FileHeader) + sections * sizeof(layout::SectionEntry)) {}
 
-  void add(layout::SectionKind kind, std::span<const std::byte> content) {
-    bytes_.resize(padded_to(bytes_.size(), 8));
+  void add(layout::SectionKind kind, std::span<const std::byte> content,
+           std::uint64_t multiple = 8) {
+    bytes_.resize(padded_to(bytes_.size(), multiple));
     table_.push_back(
         {static_cast<std::uint32_t>(kind), 0, bytes_.size(), content.size(), checksum_of(content)});
     bytes_.insert(bytes_.end(), content.begin(), content.end());
@@ -138,16 +139,13 @@ ScratchFile kept_file(FileLayer& files, const std::string& path) {
   return ScratchFile(files, path, ScratchFile::kept_at(path));
 }
 
-/// Adds the sections of a raster's heights to the table, from an offset on.
+/// Adds the sections of a raster's heights below the root to the table, from an offset on.
 /// @return Where they end.
 std::uint64_t place_floor(Front& front, std::uint64_t offset,
-                          std::span<const layout::FloorNode> nodes, std::uint64_t page_bytes,
+                          std::span<const layout::FloorNode> below, std::uint64_t page_bytes,
                           std::uint64_t page_checksum) {
-  const auto below = nodes.subspan(1);
-  offset = front.add_outside(layout::SectionKind::kFloorRoot, offset, sizeof(layout::FloorNode));
   offset = front.add_outside(layout::SectionKind::kFloorNodes, offset, below.size_bytes());
   offset = front.add_outside(layout::SectionKind::kFloorPages, offset, page_bytes);
-  front.section(layout::SectionKind::kFloorRoot).checksum = checksum_of_object(nodes.front());
   front.section(layout::SectionKind::kFloorNodes).checksum = checksum_of(std::as_bytes(below));
   front.section(layout::SectionKind::kFloorPages).checksum = page_checksum;
   return offset;
@@ -312,9 +310,9 @@ void StoreWriter::add_floor(const FloorFacts& facts,
   floor_nodes_ = floor.nodes(facts);
 }
 
-/// Writes the heights behind the pages of records.
+/// Writes the heights and the nodes below their root behind the pages of records.
 void StoreWriter::write_floor(std::uint64_t nodes_offset) {
-  const auto nodes = std::as_bytes(std::span(floor_nodes_));
+  const auto nodes = std::as_bytes(std::span(floor_nodes_).subspan(1));
   file_.write_at(nodes, nodes_offset);
   file_.copy_from(*floor_pages_, 0, floor_bytes_, nodes_offset + nodes.size());
 }
@@ -348,6 +346,10 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   if (directory) {
     front.reserve(layout::SectionKind::kDirectory, directory->root_bytes());
   }
+  if (has_floor) {
+    front.add(layout::SectionKind::kFloorRoot, std::as_bytes(std::span(floor_nodes_).first(1)),
+              layout::kNodeBytes);
+  }
   const std::uint64_t index_offset = padded_to(front.size(), layout::kNodeBytes);
   const std::uint64_t index_end =
       front.add_outside(layout::SectionKind::kIndex, index_offset, shape.total_bytes());
@@ -359,9 +361,9 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   layout::FileHeader header{};
   const std::uint64_t pages_end =
       front.add_outside(layout::SectionKind::kPages, front_bytes, written_bytes_);
-  header.file_bytes =
-      has_floor ? place_floor(front, pages_end, floor_nodes_, floor_bytes_, floor_checksum_)
-                : pages_end;
+  header.file_bytes = has_floor ? place_floor(front, pages_end, std::span(floor_nodes_).subspan(1),
+                                              floor_bytes_, floor_checksum_)
+                                : pages_end;
 
   const PageSlots slots = move_pages_behind(front_bytes);
   if (directory) {

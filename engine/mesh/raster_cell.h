@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "engine/geometry/point.h"
@@ -20,6 +21,11 @@ struct RasterCell {
   double code[4];  ///< Height codes; not looked at where `has_height` is 0.
   std::uint8_t has_height[4];
 };
+
+/// The corner with a number of RasterCell's, of the cell whose lower left one is `corner`.
+[[nodiscard]] constexpr GridPoint cell_corner(GridPoint corner, std::size_t number) noexcept {
+  return {corner.x + (number == 1 || number == 2 ? 1 : 0), corner.y + (number >= 2 ? 1 : 0)};
+}
 
 /// The diagonal that cuts the cell whose lower left corner is the grid point `corner`. It depends
 /// on the cell alone, so tiles agree. In this order:

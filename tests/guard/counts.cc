@@ -48,7 +48,9 @@ class Counter {
  public:
   /// @param second  Of the terrain's store.
   Counter(std::string name, const Terrain& terrain, const RecordIndex& second)
-      : name_(std::move(name)), terrain_(terrain), second_(second) {}
+      : name_(std::move(name)), terrain_(terrain), stars_(terrain), second_(second) {
+    stars_.use_floor(false);
+  }
 
   Counts run() {
     const StoreFile& store = terrain_.store();
@@ -56,6 +58,7 @@ class Counter {
     add("bytes a vertex", static_cast<double>(store.file_bytes()) / vertices);
     count_points("point, exact: ", {});
     count_points("point, error 5: ", 5.0);
+    if (terrain_.floor() != nullptr) count_heights();
     count_windows("window 1/25: ", 0.2);
     count_windows("window 1/4: ", 0.5);
     for (const double tolerance : {1.0, 2.0, 5.0, 10.0, 20.0}) {
@@ -81,12 +84,37 @@ class Counter {
     QueryCost sum;
     for (int i = 0; i < kPoints; ++i) {
       const MapPoint at = places.point();
-      sum.add_counts(terrain_.locate(std::span(&at, 1), request).cost);
+      sum.add_counts(stars_.locate(std::span(&at, 1), request).cost);
     }
     const auto mean = [](std::uint64_t n) { return static_cast<double>(n) / kPoints; };
     add(what + "pages", mean(sum.io.pages));
     add(what + "nodes", mean(sum.io.index_nodes));
     add(what + "stars", mean(sum.stars_read));
+  }
+
+  /// The full TIN of a raster by its heights.
+  void count_heights() {
+    constexpr int kPlaces = 500;
+    Places places(terrain_.store().facts());
+    QueryCost points, windows;
+    std::uint64_t triangles = 0;
+    for (int i = 0; i < kPlaces; ++i) {
+      const MapPoint at = places.point();
+      points.add_counts(terrain_.locate(std::span(&at, 1), {}, AnswerBy::kHeights).cost);
+      RefineRequest request;
+      request.region = places.window(0.2);
+      request.form = ResultForm::kMeetingRegion;
+      const RefinedTin tin = terrain_.refine(request);
+      windows.add_counts(tin.cost);
+      triangles += tin.triangles;
+    }
+    const auto mean = [](std::uint64_t n) { return static_cast<double>(n) / kPlaces; };
+    add("point by heights: pages", mean(points.io.pages));
+    add("point by heights: nodes", mean(points.io.index_nodes));
+    add("point by heights: samples", mean(points.samples_read));
+    add("window 1/25 by heights: pages", mean(windows.io.pages));
+    add("window 1/25 by heights: samples a triangle",
+        static_cast<double>(windows.samples_read) / static_cast<double>(triangles));
   }
 
   void count_windows(const std::string& what, double side) {
@@ -101,7 +129,7 @@ class Counter {
       request.region = window;
       by_splits.add_counts(terrain_.refine(request).cost);
       request.form = ResultForm::kMeetingRegion;
-      const RefinedTin tin = terrain_.refine(request);
+      const RefinedTin tin = stars_.refine(request);
       by_stars.add_counts(tin.cost);
       vertices += tin.vertices;
       triangles += tin.triangles;
@@ -123,6 +151,7 @@ class Counter {
 
   std::string name_;
   const Terrain& terrain_;
+  Terrain stars_;  ///< The same, answered from stars.
   const RecordIndex& second_;
   Counts counts_;
 };

@@ -446,23 +446,27 @@ TEST_F(FloorVerify, SectionsAreRefusedAtTheOpening) {
       EXPECT_NE(e.message().find(what), std::string::npos) << e.message();
     }
   };
-  const auto with_section = [](std::size_t from_end,
+  const auto with_section = [](SectionKind kind,
                                const std::function<void(layout::SectionEntry&)>& change) {
     return [=](Bytes& bytes) {
       auto sections = sections_of(bytes);
-      change(sections[sections.size() - from_end]);
+      for (layout::SectionEntry& s : sections) {
+        if (s.kind == static_cast<std::uint32_t>(kind)) change(s);
+      }
       set_sections(bytes, sections);
     };
   };
-  for (const std::size_t section : {1U, 2U, 3U}) {
-    expect_refused("one section is missing", with_section(section, [](auto& s) { s.kind = 99; }));
+  for (const SectionKind kind :
+       {SectionKind::kFloorRoot, SectionKind::kFloorNodes, SectionKind::kFloorPages}) {
+    expect_refused("one section is missing", with_section(kind, [](auto& s) { s.kind = 99; }));
   }
   expect_refused("samples out", [](Bytes& bytes) {
     layout::FileHeader header = header_of(bytes);
     header.base_error = layout::to_bits(0.5);
     set_header(bytes, header);
   });
-  expect_refused("number of nodes", with_section(3, [](auto& s) { s.bytes -= 8; }));
+  expect_refused("number of nodes",
+                 with_section(SectionKind::kFloorRoot, [](auto& s) { s.bytes -= 8; }));
   expect_refused("number of pages", [](Bytes& bytes) {
     bytes.resize(bytes.size() - 8);
     auto sections = sections_of(bytes);

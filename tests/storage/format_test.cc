@@ -196,12 +196,16 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
 
   const Bytes raster = read_file(golden_with_floor());
   seed("store_open", "heights_sealed", {std::byte{1}}, raster);
-  const auto floor_root = section_of(raster, layout::SectionKind::kFloorRoot);
-  const auto from_root = [](const Bytes& bytes, std::uint64_t offset) {
-    return Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end());
+  const auto heights_of = [](const Bytes& bytes) {
+    const auto at = [&](layout::SectionKind kind) {
+      return bytes.begin() + static_cast<std::ptrdiff_t>(section_of(bytes, kind).offset);
+    };
+    const auto root = at(layout::SectionKind::kFloorRoot);
+    Bytes heights(root, root + layout::kNodeBytes);
+    heights.insert(heights.end(), at(layout::SectionKind::kFloorNodes), bytes.end());
+    return heights;
   };
-  seed("floor", "small_raster", {std::byte{1}, std::byte{0}, std::byte{0}},
-       from_root(raster, floor_root.offset));
+  seed("floor", "small_raster", {std::byte{1}, std::byte{0}, std::byte{0}}, heights_of(raster));
 
   const TestFolder folder;
   for (const bool is_float : {false, true}) {
@@ -211,7 +215,7 @@ TEST(Format, DISABLED_WritesTheGoldenFileAndTheFuzzSeedsAgain) {
     seed("floor", is_float ? "rough_float32" : "rough_int32",
          {is_float ? std::byte{0} : std::byte{1},
           static_cast<std::byte>(pages.bytes / layout::kFloorPageBytes - 1), std::byte{0}},
-         from_root(rough, section_of(rough, layout::SectionKind::kFloorRoot).offset));
+         heights_of(rough));
   }
   StoreContent none = two_records();
   none.segments.clear();

@@ -83,17 +83,17 @@ inline FloorSections floor_sections_of(const Bytes& file) {
   return result;
 }
 
-/// The file with other sections of heights, which are the last ones, sealed.
+/// The file with other sections of heights, sealed: the root in its place, the others at the end.
 inline Bytes with_floor(const Bytes& file, const FloorSections& floor) {
   std::vector<layout::SectionEntry> sections = sections_of(file);
   Bytes result(file.begin(),
-               file.begin() + static_cast<std::ptrdiff_t>(sections.at(sections.size() - 3).offset));
+               file.begin() + static_cast<std::ptrdiff_t>(sections.at(sections.size() - 2).offset));
+  set_object(result, section_of(file, layout::SectionKind::kFloorRoot).offset, floor.root);
   const auto put = [&](std::size_t section, std::span<const std::byte> bytes) {
     sections[section].offset = result.size();
     sections[section].bytes = bytes.size();
     result.insert(result.end(), bytes.begin(), bytes.end());
   };
-  put(sections.size() - 3, std::as_bytes(std::span(&floor.root, 1)));
   put(sections.size() - 2, std::as_bytes(std::span(floor.nodes)));
   put(sections.size() - 1, floor.pages);
   set_sections(result, sections);

@@ -325,6 +325,23 @@ TEST_F(ExportType, RoundsHeightsToIt) {
   EXPECT_EQ(exported("Int16", {"--window", "501000", "3998500", "502000", "3999500"}).at("exact"),
             false);
   EXPECT_EQ(read_whole(made_).type, "Int16");
+  for (const char* nodata : {"-32769", "-9999.5", "nan"}) {
+    expect_refusal(run_ptin({"export", store_, "-o", folder_.file("no.tif"), "--type", "Int16",
+                             "--nodata", nodata, "-q"}),
+                   2, "--nodata");
+  }
+}
+
+TEST_F(ExportType, ChoosesANodataThatNoHeightIsRoundedTo) {
+  Recipe recipe;
+  recipe.type = "Float32";
+  recipe.value = [](int x, int y) { return x == 7 && y == 9 ? -9998.75 : std::floor(hills(x, y)); };
+  make(source_, recipe);
+  build();
+  expect_done({"export", store_, "-o", made_, "--type", "Int16", "-q"});
+  EXPECT_EQ(read_whole(made_).nodata, -32768.0);
+  expect_done({"export", store_, "-o", made_, "--type", "Float64", "-q", "--overwrite"});
+  EXPECT_EQ(read_whole(made_).nodata, -9999.0);
 }
 
 }  // namespace

@@ -268,6 +268,9 @@ TEST(Export, RefusesMemoryThatASinglePositionDoesNotFit) {
   const TestFolder folder;
   const Terrain terrain = Terrain::open(built(folder, "coast_257.tif"));
   EXPECT_THROW(static_cast<void>(joined_under(terrain, {}, 500)), Error);
+  Terrain stars = terrain;
+  stars.use_floor(false);
+  EXPECT_THROW(static_cast<void>(joined_under(stars, {}, 20'000)), Error);
 }
 
 TEST(Export, WritesTheFirstVerticesAsRefineDoes) {
@@ -333,12 +336,18 @@ TEST(Export, OfADamagedStoreLeavesNothingBehind) {
   const TestFolder folder;
   const std::string file = built(folder, "coast_257.tif");
   std::string bytes = read_file(file);
-  // The last page of heights, which the full TIN is made of.
-  bytes[bytes.size() - 2000] = static_cast<char>(bytes[bytes.size() - 2000] ^ 0x10);
+  // The last page of heights, which the full TIN is made of, and a page of records, for levels.
+  for (const std::size_t at : {bytes.size() - 2000, bytes.size() / 2}) {
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
+  }
   testing::write_file(file, bytes);
-  for (const char* name : {"a.ply", "a.gpkg", "a.fgb", "a.tif"}) {
-    const Outcome outcome = run_ptin({"export", file, "-q", "-o", folder.file(name)});
-    EXPECT_EQ(outcome.status, 4) << name << outcome.err;
+  for (const std::vector<std::string>& level : {std::vector<std::string>{}, {"--error", "0"}}) {
+    for (const char* name : {"a.ply", "a.gpkg", "a.fgb", "a.tif"}) {
+      std::vector<std::string> asked = {"export", file, "-q", "-o", folder.file(name)};
+      asked.insert(asked.end(), level.begin(), level.end());
+      const Outcome outcome = run_ptin(asked);
+      EXPECT_EQ(outcome.status, 4) << name << outcome.err;
+    }
   }
   EXPECT_EQ(folder.names(), std::vector<std::string>{"coast_257.tif.ptin"});
 }

@@ -272,7 +272,7 @@ TEST_F(Measured, AColdPointBringsLittleIntoTheCache) {
       ASSERT_EQ(cache.drop(), 0U);
       const Terrain terrain = opener.open(store_, way);
       EXPECT_LE(cache.resident_bytes(), std::uint64_t{16} << 10) << name_of(way);
-      ASSERT_NE(terrain.floor(), nullptr);  // its root comes with the first question, once
+      ASSERT_NE(terrain.floor(), nullptr);  // its root is read with the first question, once
       const std::uint64_t front = cache.resident_bytes();
       const Question q = questions->make(QuestionKind::kPoint, i, terrain);
       const Answer answer = questions->ask(q, terrain, {});

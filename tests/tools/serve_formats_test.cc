@@ -65,6 +65,7 @@ TEST_F(Serve, ValidatesWhatClientsKeep) {
   EXPECT_EQ(kept.body, first.body);
   EXPECT_EQ(kept.header("server-timing"), "cache;desc=\"hit\"");
   EXPECT_NE(first.header("server-timing").find("pages="), std::string::npos);
+  EXPECT_NE(first.header("server-timing").find(" samples="), std::string::npos);
   EXPECT_EQ(kept.header("ptin-certified-error"), "5");
 }
 

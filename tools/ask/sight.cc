@@ -110,7 +110,9 @@ void add_question(Parameters& rows, SightQuestion& question) {
              "Leave out what is not among the terrain's N most important vertices, instead of an "
              "error; may answer undecided");
   rows.add("budget", &request.budget, "N",
-           "Stop after this many stars (--by splits: records) for a pair; may answer undecided")
+           "Stop after this many stars (by heights: samples; by splits: records) for a pair; may "
+           "answer "
+           "undecided")
       .at(Door::kProgram);
   add_crs(rows);
 }

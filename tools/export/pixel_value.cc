@@ -28,8 +28,10 @@ double default_nodata(const StoreFacts& facts, PixelValue value,
                       std::optional<GDALDataType> type) noexcept {
   constexpr double kUsual = -9999.0;
   if (value == PixelValue::kHillshade) return 0.0;
-  if (value != PixelValue::kHeight || !(facts.min_height <= kUsual && kUsual <= facts.max_height))
-    return kUsual;
+  // Heights beside it are rounded to it where pixels are whole.
+  const double off = type == GDT_Int16 || type == GDT_Int32 ? 0.5 : 0.0;
+  const bool is_taken = facts.min_height - off <= kUsual && kUsual <= facts.max_height + off;
+  if (value != PixelValue::kHeight || !is_taken) return kUsual;
   if (type == GDT_Int16) return std::numeric_limits<std::int16_t>::lowest();
   if (type == GDT_Int32) return std::numeric_limits<std::int32_t>::lowest();
   return static_cast<double>(std::numeric_limits<float>::lowest());

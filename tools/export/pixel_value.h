@@ -33,7 +33,8 @@ struct PixelContent {
 [[nodiscard]] GDALDataType type_of_pixels(const StoreFacts& facts, PixelValue value);
 
 /// A value for pixels without one: 0 of hillshades, else -9999; of heights the lowest float when
-/// -9999 lies between the terrain's least and largest height, or the least number of an integer type.
+/// -9999 lies between the terrain's least and largest height as the type has them, or the least number of
+/// an integer type.
 /// @param type  None: type_of_pixels().
 [[nodiscard]] double default_nodata(const StoreFacts& facts, PixelValue value,
                                     std::optional<GDALDataType> type = std::nullopt) noexcept;

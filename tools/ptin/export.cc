@@ -297,12 +297,23 @@ void warn_of_triangles(const Exported& made, const ExportFormat& format, const S
   }
 }
 
+/// Refuses a value that pixels of whole numbers do not have.
+/// @param type  None: they are floats.
+void check_nodata(double nodata, std::optional<GDALDataType> type) {
+  const double most = type == GDT_Int16 ? 0x1p15 : 0x1p31;
+  const bool is_whole = type == GDT_Int16 || type == GDT_Int32;
+  if (is_whole && !(nodata >= -most && nodata < most && nodata == std::trunc(nodata))) {
+    refuse(std::string("is no number of ") + GDALGetDataTypeName(*type), "--nodata");
+  }
+}
+
 RasterTarget raster_target(const ExportFormat& format, const ExportOptions& options,
                            const StoreFile& store) {
   const ExportMemory memory = memory_of(options);
   const PixelContent content = content_of(options, format);
   std::optional<GDALDataType> type;
   if (!options.type.empty()) type = GDALGetDataTypeByName(options.type.c_str());
+  if (options.nodata) check_nodata(*options.nodata, type);
   return {options.out.output,
           options.out.overwrite,
           format.is_cog,

@@ -61,6 +61,7 @@ void add_cost(http::Response& response, const QueryCost& cost) {
   append_json_number(value, std::round(1e5 * cost.seconds) / 1e2);
   value += ";desc=\"pages=" + std::to_string(cost.io.pages) +
            " stars=" + std::to_string(cost.stars_read) +
+           " samples=" + std::to_string(cost.samples_read) +
            " records=" + std::to_string(cost.records_retrieved) +
            " bytes=" + std::to_string(cost.io.bytes_read);
   if (cost.io.remote_rounds > 0) {

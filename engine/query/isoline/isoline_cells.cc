@@ -102,11 +102,12 @@ std::size_t CellLines::crossed_once() const noexcept {
 }
 
 CellLines::Corner CellLines::corner(const At& at, std::uint32_t number) const noexcept {
-  const std::uint32_t x = at.x + (number == 1 || number == 2 ? 1 : 0);
-  const std::uint32_t y = at.y + (number >> 1);
-  return {{square_.first.x + static_cast<std::int32_t>(x),
-           square_.first.y + static_cast<std::int32_t>(y)},
-          square_.heights[std::size_t{y} * square_.width + x]};
+  const GridPoint p =
+      cell_corner({static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y)}, number);
+  return {
+      {square_.first.x + p.x, square_.first.y + p.y},
+      square_
+          .heights[static_cast<std::size_t>(p.y) * square_.width + static_cast<std::size_t>(p.x)]};
 }
 
 CellLines::At CellLines::entered(std::uint32_t x, std::uint32_t y,

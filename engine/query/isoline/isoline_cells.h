@@ -72,7 +72,9 @@ class CellLines {
   [[nodiscard]] bool enter_next(At& at) const noexcept;
   [[nodiscard]] bool is_above(std::uint32_t x, std::uint32_t y,
                               std::uint32_t number) const noexcept {
-    return (above_[y + (number >> 1)] >> (x + (number == 1 || number == 2 ? 1 : 0)) & 1) != 0;
+    const GridPoint p =
+        cell_corner({static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)}, number);
+    return (above_[static_cast<std::size_t>(p.y)] >> p.x & 1) != 0;
   }
   /// Looks which samples the level is not above, and which cells have some of both.
   void find_mixed(std::uint64_t least_above);

@@ -43,10 +43,11 @@ class LivingReader {
         stars_(store_, detail) {}
 
   /// Hands each triangle of a place to the visitor once: those of T0, then page by page in the order
-  /// of the file, then those that the level tells last. False when the visitor ended it.
+  /// of the file, then those that the level tells last; of the full TIN of a raster tile by tile along
+  /// the curve (floor_cells.h). False when the visitor ended it.
   /// @throws Error corruption, io_error, cancelled; resource_exhausted where a number of vertices cuts
   ///     between more records of one error than fit the memory; what the visitor throws
-  /// Cost: a search of the index and the pages with such stars, announced together. Memory: one
+  /// Cost: a search of the index and the pages with such stars, or tiles, announced together. Memory: one
   /// page; where a number of vertices cuts between records of one error, besides the triangles of
   /// the place that die at that error.
   bool read(const LivingPlace& place, QueryContext& context, LivingVisitor& visitor);

@@ -20,10 +20,10 @@ class LivingVisitor {
   LivingVisitor(const LivingVisitor&) = delete;
   LivingVisitor& operator=(const LivingVisitor&) = delete;
   virtual ~LivingVisitor() = default;
-  /// Called once, before a page is read: about so many records are on the pages that will be. False
-  /// ends it.
+  /// Called once, before a page is read: about so many records are on the pages that will be, or samples
+  /// of a raster in the place. False ends it.
   virtual bool expect(std::uint64_t /*records*/) { return true; }
-  /// Called before the triangles of T0, and of each page: at most so many come, and those that the
+  /// Called before the triangles of T0, and of each page or tile: at most so many come, and those that the
   /// level has not decided yet. False ends it.
   virtual bool begin(std::size_t /*most_triangles*/) { return true; }
   /// Called with what lives on a page of the stars that meet the box, of whose heights and triangles

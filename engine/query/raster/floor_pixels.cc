@@ -174,7 +174,7 @@ bool are_on_floor(const FloorShape& shape, const PixelCentres& centres) {
 
 void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCentres& centres,
                 const PixelBuffers<double>& buffers, const std::function<void()>& between,
-                IoCounters& counters) {
+                QueryCost& cost) {
   const FloorShape& shape = floor.facts().shape;
   PixelsOfTiles pixels(floor, heights, centres, buffers);
   const LineTiles columns(shape, pixels.columns(), shape.columns());
@@ -187,10 +187,11 @@ void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCe
       },
       [&](const Floor::TileAt& at, const FloorTile& tile) {
         if (tiles++ % kTilesBetween == 0) between();
+        cost.samples_read += tile.samples();
         pixels.copy(at, tile, columns.of(at.column), rows.of(at.row));
         return true;
       },
-      recent, counters);
+      recent, cost.io);
 }
 
 }  // namespace ptin

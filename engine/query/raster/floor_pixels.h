@@ -7,6 +7,7 @@
 
 #include "engine/query/raster/pixel_centres.h"
 #include "engine/query/raster/pixel_sampler.h"
+#include "engine/query/select/accounting.h"
 #include "storage/floor.h"
 
 namespace ptin {
@@ -24,6 +25,6 @@ namespace ptin {
 /// Cost: the tiles that hold centres, and 2 ns a sample of them; 16 bytes a tile.
 void copy_floor(const Floor& floor, const HeightEncoding& heights, const PixelCentres& centres,
                 const PixelBuffers<double>& buffers, const std::function<void()>& between,
-                IoCounters& counters);
+                QueryCost& cost);
 
 }  // namespace ptin

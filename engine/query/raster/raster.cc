@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/query/living/floor_cells.h"
 #include "engine/query/living/living_place.h"
 #include "engine/query/living/triangle_at.h"
 #include "engine/query/raster/floor_pixels.h"
@@ -99,7 +100,7 @@ class RasterReading {
         asked_(detail_of(terrain, request, context_)),
         detail_(asked_, terrain.record_source(), context_),
         reader_(terrain, detail_),
-        floor_(detail_.is_by_error() && detail_.tolerance() < 0 ? terrain.floor() : nullptr) {}
+        floor_(floor_for(terrain, detail_)) {}
 
   void hand_over(const RasterReceiver& receive) {
     const PixelRect& p = request_.pixels;
@@ -251,7 +252,7 @@ void RasterReading::sample(const PixelRect& pixels, PixelBuffers<double> buffers
             tell_progress(0);
             context_.check_stop();
           },
-          context_.cost.io);
+          context_.cost);
     } else if (is_sparse(centres)) {
       locate(centres, buffers);
     } else {

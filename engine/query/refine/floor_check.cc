@@ -12,11 +12,6 @@ std::string name_of_position(GridPoint p) {
   return "(" + std::to_string(p.x) + ", " + std::to_string(p.y) + ")";
 }
 
-/// Corners of a square, counter-clockwise from the lower left one.
-GridPoint corner_at(GridPoint square, std::size_t i) {
-  return {square.x + (i == 1 || i == 2 ? 1 : 0), square.y + (i >= 2 ? 1 : 0)};
-}
-
 bool is_lower(GridPoint a, GridPoint b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
 
 /// The corner of a triangle by which it belongs to a cell.
@@ -116,7 +111,7 @@ bool FloorCheck::put(const Floor::TileAt& at, const FloorTile& tile) {
 Diagonal FloorCheck::diagonal_at(GridPoint square) const {
   RasterCell cell{};
   for (std::size_t i = 0; i < 4; ++i) {
-    const GridPoint p = corner_at(square, i);
+    const GridPoint p = cell_corner(square, i);
     cell.code[i] = facts_.heights.code(heights_[place_of(p.x, p.y)]);
     cell.has_height[i] = has_height(p) ? 1 : 0;
   }
@@ -151,7 +146,7 @@ std::string FloorCheck::fault_in_triangle(const Tin& tin, TriangleId t) {
   const CellTriangles triangles = cell_triangles(diagonal_at(square));
   for (std::size_t half = 0; half < 2; ++half) {
     const bool is_it = std::ranges::all_of(triangles[half], [&](std::uint8_t i) {
-      return std::ranges::find(corners, corner_at(square, i)) != corners.end();
+      return std::ranges::find(corners, cell_corner(square, i)) != corners.end();
     });
     if (is_it) found_[place_of(square.x, square.y)] |= static_cast<std::uint8_t>(1U << half);
   }
@@ -167,9 +162,9 @@ std::optional<GridPoint> FloorCheck::missing(const GridCell& cell) const {
       if (found == 3) continue;
       const CellTriangles triangles = cell_triangles(diagonal_at(square));
       for (std::size_t half = 0; half < 2; ++half) {
-        const std::array<GridPoint, 3> corners{corner_at(square, triangles[half][0]),
-                                               corner_at(square, triangles[half][1]),
-                                               corner_at(square, triangles[half][2])};
+        const std::array<GridPoint, 3> corners{cell_corner(square, triangles[half][0]),
+                                               cell_corner(square, triangles[half][1]),
+                                               cell_corner(square, triangles[half][2])};
         if ((found >> half & 1) == 0 && cell.holds(lowest(corners))) return square;
       }
     }

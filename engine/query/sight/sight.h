@@ -38,8 +38,9 @@ struct SightRequest {
   /// is exact. And so it is in a few points more (not as the paper has it), by which the answer is
   /// most open.
   DetailRequest detail;
-  /// Stop once so many stars were read for one pair, or, as the paper has it, records. Checked before
-  /// each step, so the last step may overrun it.
+  /// Stop once so many stars were read for one pair; of the full TIN of a raster samples, and as the
+  /// paper has it records. Checked before each step, so the last step may overrun it: by a tile of
+  /// samples, say.
   std::optional<std::uint64_t> budget;
   /// Only the verdict is wanted. The obstruction is then any point below ground that deciding
   /// showed, and clearances are NaN unless both ends have one position.

@@ -18,8 +18,9 @@ namespace {
 
 constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1 + sizeof(VertexId);
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
-constexpr double kInLine =
-    1e-14;  ///< Of products of doubles that a difference and a product round.
+/// A centre, an offset, differences and products of these round by 2^-53 of a coordinate each, and are not
+/// more than eight.
+constexpr double kRoundings = 0x1p-50;
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
@@ -28,6 +29,13 @@ constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few piece
 struct Approach {
   bool from_within = false;
   Horizon::Side side = Horizon::Side::kBoth;
+};
+
+/// Where a centre lies in a triangle, and how the ray comes to it.
+struct PlaceInTriangle {
+  double weights[3] = {};  ///< Of the corners; none is below 0.
+  Horizon::Side side = Horizon::Side::kBoth;
+  Offset along;  ///< In its direction the pieces of the horizon are looked up.
 };
 
 class Viewer {
@@ -89,6 +97,9 @@ class Viewer {
   void look_at_pixels_behind(TriangleId t, const Horizon& horizon);
   void look_at_box(TriangleId t, const Horizon& horizon, std::initializer_list<Offset> points);
   void look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column, std::int64_t row);
+  [[nodiscard]] bool is_on_line(const Offset& a, const Offset& b, const Offset& p) const noexcept;
+  [[nodiscard]] std::optional<PlaceInTriangle> place_in(const std::array<Offset, 3>& o,
+                                                        const Offset& p) const noexcept;
   [[nodiscard]] Approach approach_corner(const std::array<Offset, 3>& o, int corner) const noexcept;
   [[nodiscard]] double drop(double x, double y) const noexcept {
     const double gx = x * ground_x_;
@@ -404,10 +415,19 @@ void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
     // Small pixels make offsets larger than any integer; -1 and the size stand for all outside.
     return static_cast<std::int64_t>(std::clamp(value, -1.0, static_cast<double>(size)));
   };
-  const std::int64_t from_column = clamp(std::ceil((left - first_x_) / pixel_x_), result_.width);
-  const std::int64_t to_column = clamp(std::floor((right - first_x_) / pixel_x_), result_.width);
-  const std::int64_t from_row = clamp(std::ceil((first_y_ - high) / pixel_y_), result_.height);
-  const std::int64_t to_row = clamp(std::floor((first_y_ - low) / pixel_y_), result_.height);
+  // Places of at most 2e5 pixels round by less than 1e-10. A centre that is off a side by its rounding
+  // must be in the box of one of the triangles there: place_in() says of which.
+  constexpr double kSlack = 1e-9;
+  const auto from = [&](double place, std::uint32_t size) {
+    return clamp(std::ceil(place - kSlack), size);
+  };
+  const auto to = [&](double place, std::uint32_t size) {
+    return clamp(std::floor(place + kSlack), size);
+  };
+  const std::int64_t from_column = from((left - first_x_) / pixel_x_, result_.width);
+  const std::int64_t to_column = to((right - first_x_) / pixel_x_, result_.width);
+  const std::int64_t from_row = from((first_y_ - high) / pixel_y_, result_.height);
+  const std::int64_t to_row = to((first_y_ - low) / pixel_y_, result_.height);
   for (std::int64_t row = std::max<std::int64_t>(from_row, 0);
        row <= std::min<std::int64_t>(to_row, result_.height - 1); ++row) {
     context_.check_stop();
@@ -416,6 +436,41 @@ void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
       look_at_pixel(t, horizon, column, row);
     }
   }
+}
+
+/// Whether a centre lies on the line through two vertices, but for its rounding.
+bool Viewer::is_on_line(const Offset& a, const Offset& b, const Offset& p) const noexcept {
+  const double across = b.x - a.x, up = b.y - a.y;
+  const double most_x = std::abs(first_x_) + std::abs(p.x) + std::abs(a.x);
+  const double most_y = std::abs(first_y_) + std::abs(p.y) + std::abs(a.y);
+  return std::abs(across * (p.y - a.y) - up * (p.x - a.x)) <=
+         kRoundings * (std::abs(across) * most_y + std::abs(up) * most_x);
+}
+
+/// The place of a centre in a triangle; none: it is outside, or on a side that the ray reaches from beyond.
+std::optional<PlaceInTriangle> Viewer::place_in(const std::array<Offset, 3>& o,
+                                                const Offset& p) const noexcept {
+  PlaceInTriangle place;
+  place.along = p;
+  for (int i = 0; i < 3; ++i) {
+    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
+    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
+    const double faces = turn(a, b);
+    // Along a side in line with the eye a centre that is off by its own rounding is on it: else the
+    // ground behind the centre, on the side's other hand, would hide it.
+    const bool is_in_line = faces == 0 && is_on_line(a, b, p);
+    const double w = is_in_line ? 0.0 : (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    if (w < 0 || (w == 0 && faces < 0)) {
+      return std::nullopt;
+    }
+    if (is_in_line) {
+      place.along = a.x * p.x + a.y * p.y > 0 ? a : b;  // the eye may lie between them
+      place.side = turn(place.along, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
+                                                                         : Horizon::Side::kRight;
+    }
+    place.weights[i] = w;
+  }
+  return place;
 }
 
 void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t column,
@@ -429,30 +484,11 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     return;
   }
   const auto o = offsets(t);
-  double weights[3];
-  Horizon::Side side = Horizon::Side::kBoth;
-  Offset along = p;
-  for (int i = 0; i < 3; ++i) {
-    const Offset& a = o[static_cast<std::size_t>(next_corner(i))];
-    const Offset& b = o[static_cast<std::size_t>(previous_corner(i))];
-    const double left = (b.x - a.x) * (p.y - a.y);
-    const double right = (b.y - a.y) * (p.x - a.x);
-    const double faces = turn(a, b);
-    // Along a side in line with the eye a centre that is off by its own rounding is on it: else the
-    // ground behind the centre, on the side's other hand, would hide it.
-    const bool is_in_line =
-        faces == 0 && std::abs(left - right) <= kInLine * (std::abs(left) + std::abs(right));
-    const double w = is_in_line ? 0.0 : left - right;
-    if (w < 0 || (w == 0 && faces < 0)) {
-      return;  // outside, or on a side that the ray reaches from beyond
-    }
-    if (is_in_line) {
-      along = a.x * p.x + a.y * p.y > 0 ? a : b;  // the eye may lie between them
-      side = turn(along, o[static_cast<std::size_t>(i)]) > 0 ? Horizon::Side::kLeft
-                                                             : Horizon::Side::kRight;
-    }
-    weights[i] = w;
+  const std::optional<PlaceInTriangle> place = place_in(o, p);
+  if (!place) {
+    return;
   }
+  const auto& weights = place->weights;
   if (!is_surface(t) && !holds_surface(tin_, t, weights)) {
     return;
   }
@@ -470,7 +506,7 @@ void Viewer::look_at_pixel(TriangleId t, const Horizon& horizon, std::int64_t co
     p.z += weights[i] / sum * (o[i].z + drop(o[i].x, o[i].y));
   }
   p.z += request_.target_height - drop(p.x, p.y);
-  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, side, along, horizon));
+  see(pixel, sees(p, walked_ ? spot_at(p) : eye_.spot, place->side, place->along, horizon));
 }
 
 /// The vertices that were looked at, in the order of their keys: a mesh has them in that in which it was

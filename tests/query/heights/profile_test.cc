@@ -234,11 +234,12 @@ void shares_pages(const Terrain& terrain) {
     const ProfileResult all = profile(terrain, lines, request);
     EXPECT_EQ(all.skipped_lines, 6U);
     std::size_t i = 0;
-    std::uint64_t alone = 0;
+    std::uint64_t alone = 0, records = 0;
     for (std::uint32_t line = 0; line < lines.size(); ++line) {
       if (lines[line][0] == lines[line][1]) continue;
       const ProfileResult one = profile(terrain, lines[line]);
       alone += one.cost.io.pages;
+      records += one.cost.records_examined;
       for (const ProfilePoint& p : one.points) {
         ASSERT_LT(i, all.points.size());
         ASSERT_EQ(all.points[i].line, line);
@@ -253,6 +254,7 @@ void shares_pages(const Terrain& terrain) {
     }
     EXPECT_EQ(i, all.points.size());
     EXPECT_LT(all.cost.io.pages, alone / 2);
+    EXPECT_LE(all.cost.records_examined, records / 2);  // by heights there are none
   }
 }
 

@@ -147,6 +147,7 @@ TEST_IN_RELEASE(FloorPixels, ReadNoPagesOfStarsWhereTheyAreSamples) {
     std::vector<double> heights(257 * 257);
     const RasterResult result = terrain.raster(request, heights);
     EXPECT_EQ(result.cost.io.pages, terrain.floor()->pages()) << name;
+    EXPECT_GE(result.cost.samples_read, 257U * 257U) << name;
     EXPECT_TRUE(result.exact);
     Terrain by_stars = terrain;
     by_stars.use_floor(false);

@@ -14,8 +14,10 @@
 
 #include "engine/error.h"
 #include "engine/geometry/orient.h"
+#include "engine/mesh/raster_tin.h"
 #include "engine/query/questions.h"
 #include "engine/query/select/coarsest.h"
+#include "engine/query/sight/viewshed_sweep.h"
 #include "engine/query/sight/viewshed_walk.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/reference_hierarchy.h"
@@ -393,7 +395,7 @@ std::size_t unlike(const OpenedTerrain& a, const OpenedTerrain& b, ViewshedReque
 
 /// The mesh of the grid and that of records have their triangles in different orders, and each triangle
 /// another first corner. Sweeps take them in these orders, so only what a rounding decides may differ.
-RC_GTEST_PROP(Viewshed, FromHeightsIsThatFromStars, (std::uint64_t seed)) {
+RC_GTEST_PROP(Viewshed, FromHeightsIsThatBySplits, (std::uint64_t seed)) {
   const reference::SmallTerrain t(seed);
   OpenedTerrain stars = *t.terrain;
   stars.use_floor(false);
@@ -425,6 +427,50 @@ RC_GTEST_PROP(Viewshed, FromHeightsIsThatFromStars, (std::uint64_t seed)) {
   } catch (const Error& error) {
     RC_ASSERT(error.code() == ErrorCode::invalid_argument);  // outside, or on a void
     RC_ASSERT_THROWS_AS(viewshed(*t.terrain, request), Error);
+  }
+}
+
+/// From the middle of a bowl each place is seen. Centres of pixels that stand on lines of samples, or in
+/// line with edges, are off these by their rounding.
+TEST(Viewshed, OfABowlHasAllPixels) {
+  constexpr int kSide = 601, kMiddle = kSide / 2;
+  std::vector<HeightBits> heights;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      heights.push_back(
+          static_cast<HeightBits>((x - kMiddle) * (x - kMiddle) + (y - kMiddle) * (y - kMiddle)));
+    }
+  }
+  StoreFacts facts;
+  facts.map = {0.0, 0.0, 1.0, 1.0};
+  facts.bounds = {0, 0, kSide - 1, kSide - 1};
+  facts.heights = {HeightType::int32, 1.0, 0.0};
+  facts.max_height = 2.0 * kMiddle * kMiddle;
+  const std::vector<std::uint8_t> valid(heights.size(), 1);
+  const Tin tin = make_raster_tin(heights, valid, {0, 0, kSide, kSide}, facts.heights);
+  ViewshedRequest request;
+  request.eye = {kMiddle, kMiddle};
+  request.radius = kMiddle - 1;
+  request.curvature.coefficient = 0;
+  request.list_vertices = false;
+  request.target_height = 1e-6;  // on an edge the last digit of a height would decide
+  for (const double size : {0.71, 0.37, 0.3, 0.1}) {
+    request.pixel_size = std::array{size, size};
+    const Viewshed seen =
+        sweep_viewshed(tin, facts, request, QueryContext(request.limits, ""), {}, {});
+    std::size_t hidden = 0, nothing = 0;
+    for (std::uint32_t row = 0; row < seen.height; ++row) {
+      for (std::uint32_t column = 0; column < seen.width; ++column) {
+        const double x = size * (double(column) - double(seen.width / 2));
+        const double y = size * (double(row) - double(seen.height / 2));
+        if (x * x + y * y > (request.radius - 1) * (request.radius - 1)) continue;
+        const Sight at = seen.pixels[std::size_t{row} * seen.width + column];
+        hidden += at == Sight::kHidden ? 1 : 0;
+        nothing += at == Sight::kNothing ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(hidden, 0U) << size;
+    EXPECT_EQ(nothing, 0U) << size;
   }
 }
 
