@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "tests/storage/failing_files.h"
 #include "tests/storage/store_fixture.h"
 #include "tests/support/test_folder.h"
 
@@ -62,29 +64,34 @@ std::vector<Place> in_order(const FloorShape& shape) {
   return places;
 }
 
-class FloorStore : public ::testing::Test {
- protected:
-  std::string written(const Raster& raster, std::uint32_t side_log2 = 5) {
-    const std::string path = folder_.file("floor.ptin");
-    const StoreContent content =
-        test::flat_rectangle(static_cast<std::int32_t>(raster.width) - 1,
-                             static_cast<std::int32_t>(raster.height) - 1, HeightType::int32);
-    FloorFacts facts;
-    facts.shape = {side_log2, raster.width, raster.height};
-    facts.source = SourceNumber::kInt16;
-    facts.nodata = -9999;
-    facts.is_exact = true;
-    StoreWriterOptions options;
-    options.overwrite = true;
-    const auto writer = StoreWriter::create(path, options);
-    writer->add_floor(facts, [&](FloorWriter& floor) {
+StoreContent content_of(const Raster& raster, std::uint32_t side_log2) {
+  StoreContent content =
+      test::flat_rectangle(static_cast<std::int32_t>(raster.width) - 1,
+                           static_cast<std::int32_t>(raster.height) - 1, HeightType::int32);
+  FloorFacts facts;
+  facts.shape = {side_log2, raster.width, raster.height};
+  facts.source = SourceNumber::kInt16;
+  facts.nodata = -9999;
+  facts.is_exact = true;
+  content.add_floor = [raster, facts](StoreWriter& writer) {
+    writer.add_floor(facts, [&](FloorWriter& floor) {
       for (const auto& [column, row] : in_order(facts.shape)) {
         EXPECT_TRUE(
             floor.add(FloorShape::key(column, row), tile_of(raster, facts.shape, column, row)));
       }
       return true;
     });
-    writer->publish(content.facts, content.t0, content.metadata);
+  };
+  return content;
+}
+
+class FloorStore : public ::testing::Test {
+ protected:
+  std::string written(const Raster& raster, std::uint32_t side_log2 = 5) {
+    const std::string path = folder_.file("floor.ptin");
+    StoreWriterOptions options;
+    options.overwrite = true;
+    test::write_store(path, content_of(raster, side_log2), options);
     return path;
   }
   test::TestFolder folder_;
@@ -311,6 +318,22 @@ TEST_F(FloorStore, EveryDamagedByteIsFound) {
         Error)
         << at;
   }
+}
+
+TEST(FloorStoreFaults, LeaveTheOldFileOrTheNewOneAndNothingElse) {
+  test::expect_old_or_new(content_of({400, 300}, 4));
+}
+
+TEST_F(FloorStore, AFullDiskIsResourceExhaustedAndLeavesNothing) {
+  const test::SmallDisk disk(folder_.file("disk"), 2);
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << test::SmallDisk::kNeeded;
+  }
+  EXPECT_EQ(test::code_of([&] {
+              test::write_store(disk.path() + "/a.ptin", content_of({2500, 1500}, 5), {});
+            }),
+            ErrorCode::resource_exhausted);
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }
 
 TEST_F(FloorStore, AFileWithoutHeightsHasNone) {
