@@ -37,7 +37,7 @@ enum class SourceNumber : std::uint32_t {
   return number != SourceNumber::kUnknown && number <= SourceNumber::kInt32 &&
          number != SourceNumber::kUInt32;
 }
-/// The least and the greatest number of a type.  REQUIRES: not kUnknown
+/// The least and the greatest number of a type; of an unknown one those of float64.
 [[nodiscard]] Interval range_of(SourceNumber number) noexcept;
 
 struct FloorFacts {

@@ -93,6 +93,7 @@ class FloorVerifier {
         place_(*front.floor),
         front_(front),
         floor_(file, place_, front.facts),
+        numbers_of_source_(range_of(floor_.facts().source)),
         tree_(floor_.pages()),
         tell_(tell),
         check_stop_(check_stop),
@@ -234,7 +235,7 @@ class FloorVerifier {
     const HeightEncoding& heights = front_.facts.heights;
     const HeightBits bits = floor_.numbers().bits(height);
     const double number = are_codes(facts.source) ? heights.code(bits) : heights.height(bits);
-    return contains(range_of(facts.source), number) && number != facts.nodata &&
+    return contains(numbers_of_source_, number) && number != facts.nodata &&
            (facts.source > SourceNumber::kInt32 || number == std::trunc(number));
   }
 
@@ -300,6 +301,7 @@ class FloorVerifier {
   const FloorPlace& place_;
   const StoreFront& front_;
   const Floor floor_;
+  const Interval numbers_of_source_;
   const FloorTree tree_;
   const TellFault& tell_;
   const std::function<void()>& check_stop_;
