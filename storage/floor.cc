@@ -27,6 +27,7 @@ Floor::Floor(const ReadableFile& file, const FloorPlace& place, const StoreFacts
   }
   numbers_ = FloorNumbers(store.heights, facts_.step);
   if (const char* const fault = fault_in(root_, tree_.children(0, 0))) damaged(fault);
+  if (root_.entry[0].first != 0) damaged("the first page of heights lacks the first tile");
 }
 
 void Floor::damaged(const char* what) const {
@@ -95,7 +96,6 @@ Floor::Found Floor::find(std::uint64_t key, std::size_t depth, Recent& recent,
     const auto after =
         std::upper_bound(here.entry.begin(), end, key,
                          [](std::uint64_t k, const layout::FloorEntry& e) { return k < e.first; });
-    if (after == here.entry.begin()) damaged("a tile of heights comes before all pages");
     found = {found.number * layout::kFloorFanOut +
                  static_cast<std::uint64_t>(after - 1 - here.entry.begin()),
              after != end ? after->first : found.end, *(after - 1), found.level + 1};

@@ -179,6 +179,8 @@ class Floor {
   [[nodiscard]] Bounds bounds_of(const TileRange& tiles, OrderedHeight least,
                                  OrderedHeight greatest) const;
   const Recent::Page& read_page(const Found& found, Recent& recent, IoCounters& counters) const;
+  /// Throws where the raster has tiles from one key to another, that one not.
+  void check_none(std::uint64_t from, std::uint64_t to) const;
   /// Visits the tiles of a page; false when `visit` ended it.
   template <class Visit>
   bool visit_tiles(const Recent::Page& page, const Visit& visit) const;

@@ -18,7 +18,36 @@ constexpr double kMostStep = static_cast<double>(std::numeric_limits<float>::max
 
 constexpr std::uint64_t kNaNBits = 0x7FF8000000000000U;  ///< The one form of a nodata of NaN.
 
+template <class T>
+Interval range_as() noexcept {
+  return {static_cast<double>(std::numeric_limits<T>::lowest()),
+          static_cast<double>(std::numeric_limits<T>::max())};
+}
+
 }  // namespace
+
+Interval range_of(SourceNumber number) noexcept {
+  switch (number) {
+    case SourceNumber::kUInt8:
+      return range_as<std::uint8_t>();
+    case SourceNumber::kInt8:
+      return range_as<std::int8_t>();
+    case SourceNumber::kUInt16:
+      return range_as<std::uint16_t>();
+    case SourceNumber::kInt16:
+      return range_as<std::int16_t>();
+    case SourceNumber::kUInt32:
+      return range_as<std::uint32_t>();
+    case SourceNumber::kInt32:
+      return range_as<std::int32_t>();
+    case SourceNumber::kFloat32:
+      return range_as<float>();
+    case SourceNumber::kFloat64:
+    case SourceNumber::kUnknown:
+      break;
+  }
+  return range_as<double>();
+}
 
 void put_facts(const FloorFacts& facts, std::uint64_t pages, layout::FloorNode& root) noexcept {
   root.side_log2 = static_cast<std::uint8_t>(facts.shape.side_log2);
@@ -58,6 +87,10 @@ const char* take_facts(const layout::FloorNode& root, const StoreFacts& store, F
   }
   facts.source = static_cast<SourceNumber>(root.source_type);
   facts.is_exact = (root.flags & kIsExact) != 0;
+  if (facts.is_exact && (facts.source == SourceNumber::kUnknown ||
+                         (are_codes(facts.source) && store.heights.type != HeightType::int32))) {
+    return "the heights are said to be the source's numbers, and cannot be of its type";
+  }
   const bool has_nodata = (root.flags & kHasNodata) != 0;
   const double nodata = layout::to_double(root.nodata);
   if ((root.flags & ~(kIsExact | kHasNodata)) != 0 || (!has_nodata && root.nodata != 0) ||

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/geometry/height.h"
+#include "engine/geometry/interval.h"
 #include "storage/floor_shape.h"
 #include "storage/floor_tile.h"
 #include "storage/page_columns.h"
@@ -29,6 +30,15 @@ enum class SourceNumber : std::uint32_t {
   kFloat32 = 7,
   kFloat64 = 8,
 };
+
+/// Whether the source's numbers are codes, of which heights are made by step and offset: those of integers that fit 32
+/// bits with a sign. Of all others they are heights.
+[[nodiscard]] constexpr bool are_codes(SourceNumber number) noexcept {
+  return number != SourceNumber::kUnknown && number <= SourceNumber::kInt32 &&
+         number != SourceNumber::kUInt32;
+}
+/// The least and the greatest number of a type; of an unknown one those of float64.
+[[nodiscard]] Interval range_of(SourceNumber number) noexcept;
 
 struct FloorFacts {
   FloorShape shape;

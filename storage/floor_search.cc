@@ -45,6 +45,16 @@ Square square_of(const FloorShape& shape) noexcept {
   return {0, static_cast<std::uint32_t>(std::bit_width(most - 1))};
 }
 
+/// Whether the raster has a tile of a square whose key is not below `from`, and below `to`.
+bool has_tile(const FloorShape& shape, Square square, std::uint64_t from, std::uint64_t to) {
+  if (square.end() <= from || to <= square.key || !square.tiles(shape)) return false;
+  if (from <= square.key && square.end() <= to) return true;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    if (has_tile(shape, square.quarter(i), from, to)) return true;
+  }
+  return false;
+}
+
 bool is_wanted(const Merit& merit, const Merit& cut_off) noexcept {
   return merit.value > -kInfinity && !merit.is_below(cut_off);
 }
@@ -169,11 +179,23 @@ std::vector<Floor::Found> Floor::find_pages(const Bound& bound, Merit cut_off, R
   return found;
 }
 
+/// A tile that is not there would be taken for one without heights: where the raster has tiles whose keys
+/// are passed over, the file is damaged.
+void Floor::check_none(std::uint64_t from, std::uint64_t to) const {
+  if (from < to && has_tile(facts_.shape, square_of(facts_.shape), from, to)) {
+    damaged("a page of heights lacks a tile of the raster");
+  }
+}
+
 template <class Visit>
 bool Floor::visit_tiles(const Recent::Page& page, const Visit& visit) const {
   const FloorPageView view = page.view();
+  std::uint64_t next = page.first;
   for (std::size_t i = 0; i < view.tiles(); ++i) {
-    const HilbertCell cell = hilbert_cell(page.first + view.key(i));
+    const std::uint64_t key = page.first + view.key(i);
+    check_none(next, key);
+    next = key + 1;
+    const HilbertCell cell = hilbert_cell(key);
     if (cell.x >= facts_.shape.columns() || cell.y >= facts_.shape.rows()) {
       damaged("a page of heights has a tile beside the raster");
     }
@@ -184,6 +206,7 @@ bool Floor::visit_tiles(const Recent::Page& page, const Visit& visit) const {
       return false;
     }
   }
+  check_none(next, page.end);
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <vector>
@@ -92,6 +93,7 @@ class FloorVerifier {
         place_(*front.floor),
         front_(front),
         floor_(file, place_, front.facts),
+        numbers_of_source_(range_of(floor_.facts().source)),
         tree_(floor_.pages()),
         tell_(tell),
         check_stop_(check_stop),
@@ -217,10 +219,24 @@ class FloorVerifier {
       return false;
     }
     for (const OrderedHeight h : {with_lone.least, with_lone.greatest}) {
-      const double height = front_.facts.heights.height(numbers.bits(h));
-      range_ = {std::min(range_.lo, height), std::max(range_.hi, height)};
+      range_ = united(range_, front_.facts.heights.height(numbers.bits(h)));
     }
+    are_of_source_ = are_of_source_ && std::ranges::all_of(tile_.lone, [&](const auto& lone) {
+                       return is_of_source(lone.height);
+                     });
     return count_heights(at);
+  }
+
+  /// Whether a source whose numbers come back can have had a height: as a number of its type, and not as
+  /// its nodata value.
+  [[nodiscard]] bool is_of_source(OrderedHeight height) const {
+    const FloorFacts& facts = floor_.facts();
+    if (!facts.is_exact) return true;
+    const HeightEncoding& heights = front_.facts.heights;
+    const HeightBits bits = floor_.numbers().bits(height);
+    const double number = are_codes(facts.source) ? heights.code(bits) : heights.height(bits);
+    return contains(numbers_of_source_, number) && number != facts.nodata &&
+           (facts.source > SourceNumber::kInt32 || number == std::trunc(number));
   }
 
   /// Counts each sample in the one tile that it belongs to: the first rows and columns of tiles are the
@@ -234,6 +250,7 @@ class FloorVerifier {
       for (std::uint32_t x = 0; x < tile_.width; ++x, ++i) {
         if (!tile_.is_void.empty() && tile_.is_void[i] != 0) continue;
         are_written = are_written && (is_code || floor_.numbers().is_written(tile_.heights[i]));
+        are_of_source_ = are_of_source_ && is_of_source(tile_.heights[i]);
         heights_ += x >= first_x && y >= first_y ? 1 : 0;
       }
     }
@@ -258,6 +275,21 @@ class FloorVerifier {
     if (heights_ > 0 && (range_.lo != facts.min_height || range_.hi != facts.max_height)) {
       tell_("the least and largest height are not those of the header", kWhere);
     }
+    compare_source();
+  }
+
+  /// What is told of a source whose numbers come back must go with them.
+  void compare_source() {
+    const FloorFacts& told = floor_.facts();
+    if (!are_of_source_) {
+      tell_("a height is the nodata value of the source, or no number of its type", kWhere);
+    }
+    const std::uint64_t samples = std::uint64_t{told.shape.width} * told.shape.height;
+    const bool has_voids = heights_ < samples;
+    if (told.is_exact && told.source <= SourceNumber::kInt32 && !told.nodata && has_voids) {
+      tell_("samples are void, and a source of whole numbers without a nodata value has none",
+            kWhere);
+    }
   }
 
   void miss(const char* fault, const std::string& where) {
@@ -269,6 +301,7 @@ class FloorVerifier {
   const FloorPlace& place_;
   const StoreFront& front_;
   const Floor floor_;
+  const Interval numbers_of_source_;
   const FloorTree tree_;
   const TellFault& tell_;
   const std::function<void()>& check_stop_;
@@ -277,7 +310,7 @@ class FloorVerifier {
   FloorTile tile_;
   std::uint64_t next_key_ = 0, tiles_ = 0, heights_ = 0;
   Interval range_{kInfinity, -kInfinity};
-  bool all_seen_ = true;
+  bool all_seen_ = true, are_of_source_ = true;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ using TellFault = std::function<void(std::string what, std::string where)>;
 
 /// Looks at every node, page and tile of the heights: checksums; entries that are the unions of what they
 /// describe; zeros; each tile once, none missing; pages packed in their one form; the range and the number
-/// of heights as in the header; and as many vertices as samples. What lies below a damaged node cannot be
+/// of heights as in the header; such heights as the source can have had; and as many vertices as samples. What lies below a damaged node cannot be
 /// looked at. Whether the heights are those of the vertices, check_hierarchy() finds out.
 /// @param check_stop  Called now and then; throws what it likes.
 /// REQUIRES: the file has such sections.

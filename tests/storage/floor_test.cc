@@ -5,18 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "engine/error.h"
+#include "tests/storage/failing_files.h"
 #include "tests/storage/made_raster.h"
+#include "tests/storage/store_fixture.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
 namespace {
 
+using test::content_of;
 using test::in_order;
 using test::Place;
 using test::Raster;
@@ -253,6 +257,22 @@ TEST_F(FloorStore, EveryDamagedByteIsFound) {
         Error)
         << at;
   }
+}
+
+TEST(FloorStoreFaults, LeaveTheOldFileOrTheNewOneAndNothingElse) {
+  test::expect_old_or_new(content_of({400, 300}, 4));
+}
+
+TEST_F(FloorStore, AFullDiskIsResourceExhaustedAndLeavesNothing) {
+  const test::SmallDisk disk(folder_.file("disk"), 2);
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << test::SmallDisk::kNeeded;
+  }
+  EXPECT_EQ(test::code_of([&] {
+              test::write_store(disk.path() + "/a.ptin", content_of({2500, 1500}, 5), {});
+            }),
+            ErrorCode::resource_exhausted);
+  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }
 
 TEST_F(FloorStore, AFileWithoutHeightsHasNone) {

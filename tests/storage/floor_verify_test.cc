@@ -144,6 +144,24 @@ class FloorVerify : public ::testing::Test {
     expect_told_of_sections(what, [&](FloorSections& s) { change(s.root); });
     EXPECT_THROW(static_cast<void>(StoreFile::open(path_)->floor()), Error) << what;
   }
+  /// @param ask  Of the heights of a file, whose tiles are asked for.
+  void expect_refused(const std::string& what, const FloorSections& sections,
+                      const std::function<void(const Floor&)>& ask) {
+    write_file(path_, with_floor(sound_, sections));
+    try {
+      ask(*StoreFile::open(path_)->floor());
+      ADD_FAILURE() << what;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ErrorCode::corruption);
+      EXPECT_NE(e.message().find(what), std::string::npos) << e.message();
+    }
+  }
+  static void visit_all(const Floor& floor) {
+    Floor::Recent recent;
+    IoCounters counters;
+    floor.visit([](const Floor::Bounds&) { return true; },
+                [](const Floor::TileAt&, const FloorTile&) { return true; }, recent, counters);
+  }
   /// A page of these tiles and no others.
   static Bytes page_of(const std::map<std::uint64_t, FloorTile>& tiles) {
     Bytes page;
@@ -263,6 +281,8 @@ TEST_F(FloorVerify, RefusesRootsThatNoProgramWrites) {
   }
   expect_root_refused("a type that", [](auto& r) { r.source_type = 9; });
   expect_root_refused("flags or bytes", [](auto& r) { r.flags = 4; });
+  expect_root_refused("cannot be of its type", [](auto& r) { r.flags = 1; });
+  expect_root_refused("lacks the first tile", [](auto& r) { r.entry[0].first = 1; });
   expect_root_refused("flags or bytes", [](auto& r) { r.nodata = 1; });
   expect_root_refused("flags or bytes", [](auto& r) {
     r.flags = 2;
@@ -277,6 +297,86 @@ TEST_F(FloorVerify, RefusesRootsThatNoProgramWrites) {
   expect_told_of_sections("not as many as", [](FloorSections& s) { s.nodes.resize(1); });
   write(made(130, 100, 1000), 5, HeightType::float32);
   expect_root_refused("a step", [](auto& r) { r.step = layout::to_bits(1e30); });
+  expect_root_refused("cannot be of its type", [](auto& r) {
+    r.flags = 1;
+    r.source_type = 4;
+  });
+}
+
+TEST_F(FloorVerify, AReaderTakesNodesForThoseOfTheirParentsKeysAlone) {
+  write(made(380, 380, UINT32_MAX / 4), 4);
+  const std::string what = "not those of its parent's keys";
+  FloorSections sections = floor_sections_of(sound_);
+  sections.node(1, 1).entry[0].first -= 1;
+  expect_refused(what, sections, visit_all);
+  sections = floor_sections_of(sound_);
+  layout::FloorNode& first = sections.node(1, 0);
+  first.entry[first.entries - 1].first = sections.node(1, 1).entry[0].first;
+  expect_refused(what, sections, visit_all);
+}
+
+TEST_F(FloorVerify, AReaderMissesTilesThatAreNotThere) {
+  for (const auto& [width, height] : {std::pair{130U, 100U}, {20U, 300U}, {300U, 20U}}) {
+    write(made(width, height, 1000), 4);
+    const std::vector<std::uint64_t> keys = [&] {
+      std::vector<std::uint64_t> all;
+      for (const auto& [key, tile] : floor_.tiles) all.push_back(key);
+      return all;
+    }();
+    for (const std::size_t i : {std::size_t{1}, keys.size() / 2, keys.size() - 1}) {
+      StoredFloor floor = floor_;
+      floor.tiles.erase(keys[i]);
+      const FloorSections sections = sections_of(floor);
+      expect_refused("lacks a tile of the raster", sections, visit_all);
+      expect_refused("is on no page", sections, [&](const Floor& read) {
+        Floor::Recent recent;
+        IoCounters counters;
+        FloorTile tile;
+        const HilbertCell at = hilbert_cell(keys[i]);
+        read.read(at.x, at.y, recent, tile, counters);
+      });
+    }
+    write_file(path_, sound_);
+    visit_all(*StoreFile::open(path_)->floor());
+  }
+}
+
+TEST_F(FloorVerify, AReaderFindsTilesThatLieElsewhere) {
+  write(made(130, 100, 1000), 5);
+  FloorSections sections = floor_sections_of(sound_);
+  sections.root.entry[1].first -= 1;
+  expect_refused("tiles of the next one", sections, visit_all);
+  StoredFloor floor = floor_;
+  floor.tiles.emplace(FloorShape::key(6, 0), floor.tiles.begin()->second);
+  expect_refused("beside the raster", sections_of(floor), visit_all);
+}
+
+TEST_F(FloorVerify, HoldsTheSourceAgainstTheHeights) {
+  write(made(40, 40, 1000), 5);
+  const auto with_source = [&](SourceNumber source, std::optional<double> nodata) {
+    StoredFloor floor = floor_;
+    floor.facts.is_exact = true;
+    floor.facts.source = source;
+    floor.facts.nodata = nodata;
+    return with_floor(sound_, sections_of(floor));
+  };
+  const FloorTile& tile = floor_.tiles.begin()->second;
+  const auto at = std::ranges::find(tile.is_void, 0) - tile.is_void.begin();
+  const auto code =
+      static_cast<std::int32_t>(tile.heights[static_cast<std::size_t>(at)] ^ 0x80000000U);
+  ASSERT_FALSE(tile.lone.empty());
+  const auto lone = static_cast<std::int32_t>(tile.lone[0].height ^ 0x80000000U);
+  for (const SourceNumber source : {SourceNumber::kInt16, SourceNumber::kUInt16}) {
+    EXPECT_EQ(faults_of(with_source(source, 5000.0)), std::vector<std::string>());
+    expect_told("a height is the nodata value", with_source(source, code));
+    expect_told("a height is the nodata value", with_source(source, lone));
+    expect_told("without a nodata value has none", with_source(source, std::nullopt));
+  }
+  expect_told("no number of its type", with_source(SourceNumber::kUInt8, 5000.0));
+  expect_told("no number of its type", with_source(SourceNumber::kUInt32, 5000.0));  // in quarters
+  EXPECT_EQ(faults_of(with_source(SourceNumber::kFloat64, std::nullopt)),
+            std::vector<std::string>());
+  expect_told("a height is the nodata value", with_source(SourceNumber::kFloat64, 0.25 * code));
 }
 
 TEST_F(FloorVerify, FindsPagesThatNoWriterPacks) {

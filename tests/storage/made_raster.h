@@ -61,9 +61,9 @@ inline std::vector<Place> in_order(const FloorShape& shape) {
   return places;
 }
 
-/// Writes a store of two triangles and all tiles of the raster.
-inline void write_raster(const std::string& path, const Raster& raster, std::uint32_t side_log2) {
-  const StoreContent content =
+/// Two triangles, and all tiles of the raster.
+inline StoreContent content_of(const Raster& raster, std::uint32_t side_log2) {
+  StoreContent content =
       flat_rectangle(static_cast<std::int32_t>(raster.width) - 1,
                      static_cast<std::int32_t>(raster.height) - 1, HeightType::int32);
   FloorFacts facts;
@@ -71,15 +71,23 @@ inline void write_raster(const std::string& path, const Raster& raster, std::uin
   facts.source = SourceNumber::kInt16;
   facts.nodata = -9999;
   facts.is_exact = true;
-  const auto writer = StoreWriter::create(path, {.overwrite = true});
-  writer->add_floor(facts, [&](FloorWriter& floor) {
-    for (const auto& [column, row] : in_order(facts.shape)) {
-      EXPECT_TRUE(
-          floor.add(FloorShape::key(column, row), tile_of(raster, facts.shape, column, row)));
-    }
-    return true;
-  });
-  writer->publish(content.facts, content.t0, content.metadata);
+  content.add_floor = [raster, facts](StoreWriter& writer) {
+    writer.add_floor(facts, [&](FloorWriter& floor) {
+      for (const auto& [column, row] : in_order(facts.shape)) {
+        EXPECT_TRUE(
+            floor.add(FloorShape::key(column, row), tile_of(raster, facts.shape, column, row)));
+      }
+      return true;
+    });
+  };
+  return content;
+}
+
+/// Writes a store of them.
+inline void write_raster(const std::string& path, const Raster& raster, std::uint32_t side_log2) {
+  StoreWriterOptions options;
+  options.overwrite = true;
+  write_store(path, content_of(raster, side_log2), options);
 }
 
 }  // namespace ptin::test

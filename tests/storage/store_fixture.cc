@@ -171,6 +171,7 @@ void write_store(const std::string& path, const StoreContent& content,
     writer->add_segment(pack_segment(segment, content.facts.heights, options.page_bytes),
                         content.facts.heights);
   }
+  if (content.add_floor) content.add_floor(*writer);
   writer->publish(content.facts, content.t0, content.metadata);
 }
 

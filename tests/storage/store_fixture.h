@@ -30,6 +30,7 @@ struct StoreContent {
   CoarsestTin t0;
   std::string metadata = R"({"source": "a test"})";
   std::vector<StarredRecords> segments;
+  std::function<void(StoreWriter&)> add_floor;  ///< Null: without the heights of a raster.
 
   [[nodiscard]] StarredRecords all_records() const;
 };

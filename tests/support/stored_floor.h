@@ -40,6 +40,15 @@ inline StoredFloor floor_of(const StoreFile& store) {
   return result;
 }
 
+/// A file as bytes that sections are taken from, and bytes as what a file holds.
+inline Bytes bytes_of(const std::string& file) {
+  const auto* const first = reinterpret_cast<const std::byte*>(file.data());
+  return {first, first + file.size()};
+}
+inline std::string text_of(const Bytes& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 /// What a file has in its sections of heights.
 struct FloorSections {
   layout::FloorNode root;

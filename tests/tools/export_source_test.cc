@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The raster that a terrain was built from, written again: bit for bit, or not at all.
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -20,6 +22,7 @@
 #include "storage/floor.h"
 #include "storage/store_file.h"
 #include "tests/support/share_of_cases.h"
+#include "tests/support/stored_floor.h"
 #include "tests/tools/program.h"
 #include "tests/tools/refusal.h"
 #include "tests/tools/whole_raster.h"
@@ -289,6 +292,36 @@ TEST_F(ExportSource, OfDamagedHeightsLeavesNothing) {
     expect_refusal(run_ptin(all), 4, "bad.ptin");
     EXPECT_EQ(folder_.names(), before);
   }
+}
+
+TEST_F(ExportSource, DoesNotBelieveADescriptionThatCannotBe) {
+  Recipe recipe;
+  recipe.value = [](int x, int y) { return 1000 + std::floor(hills(x, y)); };
+  make(source_, recipe);
+  build();
+  const test::Bytes sound = test::bytes_of(read_file(store_));
+  const auto expect_damaged = [&](const std::string& what, const test::Bytes& bytes) {
+    write_file(folder_.file("bad.ptin"), test::text_of(bytes));
+    expect_refusal(run_ptin({"export", folder_.file("bad.ptin"), "--source", "-o", made_, "-q"}), 4,
+                   what);
+  };
+  test::FloorSections floor = test::floor_sections_of(sound);
+  floor.root.source_type = static_cast<std::uint32_t>(SourceNumber::kUInt8);
+  expect_damaged("no number of the source's type", test::with_floor(sound, floor));
+  const auto with_text = [&](std::string_view old, std::string_view other) {
+    test::Bytes bytes = sound;
+    const auto place =
+        std::ranges::search(bytes, old, {}, [](std::byte b) { return static_cast<char>(b); });
+    if (place.empty() || old.size() != other.size()) throw std::runtime_error("no such text");
+    std::ranges::transform(other, place.begin(), [](char c) { return std::byte(c); });
+    test::seal(bytes);
+    return bytes;
+  };
+  const std::string means_nothing = "what means nothing";
+  expect_damaged(means_nothing, with_text("500000.1,", "500001.1,"));
+  expect_damaged(means_nothing, with_text("-30.0]", "-31.0]"));
+  expect_damaged(means_nothing, with_text("\"areas\"", "\"acres\""));
+  expect_damaged(means_nothing, with_text("\"lost\":null", "\"lost\":true"));
 }
 
 using ExportType = ExportSource;

@@ -4,6 +4,7 @@
 // terrain.
 #include "storage/verify.h"
 
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -18,6 +19,7 @@
 #include "storage/store_writer.h"
 #include "tests/support/replayed_stars.h"
 #include "tests/support/share_of_cases.h"
+#include "tests/support/stored_floor.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -164,6 +166,27 @@ TEST(Verify, FindsOneWrongHeight) {
   const Outcome outcome = verified(folder.file("planted.ptin"), folder.file("source.tif"));
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.out.find("is off by"), std::string::npos) << outcome.out;
+}
+
+TEST(Verify, FindsOneWrongHeightOfALoneSample) {
+  const TestFolder folder;
+  RasterRecipe recipe = hills_with_voids();
+  recipe.value = [value = recipe.value](int x, int y) {
+    const bool is_around = std::abs(x - 40) < 4 && std::abs(y - 25) < 4 && (x != 40 || y != 25);
+    return is_around ? -9999.0 : value(x, y);
+  };
+  const std::string store = built_raster(folder, recipe);
+  const test::Bytes sound = test::bytes_of(testing::read_file(store));
+  ASSERT_EQ(verified(store, folder.file("source.tif")).status, 0);
+  test::StoredFloor floor = test::floor_of(*StoreFile::open(store));
+  for (auto& [key, tile] : floor.tiles) {
+    for (FloorTile::Lone& lone : tile.lone) lone.height += 1;
+  }
+  testing::write_file(store, test::text_of(test::with_floor(sound, test::sections_of(floor))));
+  ASSERT_EQ(run_ptin({"verify", store, "-q"}).status, 0) << "no vertex has it";
+  const Outcome outcome = verified(store, folder.file("source.tif"));
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.out.find("the lone sample at"), std::string::npos) << outcome.out;
 }
 
 TEST(Verify, FindsVoidsThatAreCheaperThanTheyMayBe) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -51,6 +52,25 @@ std::optional<std::array<double, 6>> geotransform_in(const nlohmann::json& told,
   return result;
 }
 
+/// Whether a geotransform, or none, places the samples where the file has them, but for a hundredth of a
+/// pixel: sums of large and small numbers are rounded.
+bool is_placed_by(const std::optional<std::array<double, 6>>& geotransform,
+                  const StoreFacts& facts) {
+  constexpr double kSlack = 0.01;
+  const auto along = [](double edge, double step, std::int32_t last, double origin, double pixel) {
+    const double first = step > 0 ? edge + 0.5 * step : edge + (last + 0.5) * step;
+    return std::abs(first - origin) <= kSlack * pixel &&
+           std::abs(std::abs(step) - pixel) * last <= kSlack * pixel;
+  };
+  const AffineMap& map = facts.map;
+  if (!geotransform) {
+    return map.origin_x == 0.0 && map.origin_y == 0.0 && map.step_x == 1.0 && map.step_y == 1.0;
+  }
+  const std::array<double, 6>& t = *geotransform;
+  return along(t[0], t[1], facts.bounds.max_x, map.origin_x, map.step_x) &&
+         along(t[3], t[5], facts.bounds.max_y, map.origin_y, map.step_y);
+}
+
 GDALDataType type_of(SourceNumber number) {
   switch (number) {
     case SourceNumber::kUInt8:
@@ -74,12 +94,6 @@ GDALDataType type_of(SourceNumber number) {
   return GDT_Unknown;
 }
 
-/// Whether the source's numbers are codes, and heights are scaled from them: of integers that fit 32 bits
-/// with a sign.
-bool are_codes(GDALDataType type) {
-  return type == GDT_Byte || type == GDT_UInt16 || type == GDT_Int16 || type == GDT_Int32;
-}
-
 /// Fills the raster, block by block.
 class SourceWriter {
  public:
@@ -88,6 +102,8 @@ class SourceWriter {
       : path_(terrain.store().path()),
         heights_(terrain.store().facts().heights),
         floor_(*source.floor),
+        source_(floor_.facts().source),
+        range_(range_of(source_)),
         form_(source.form),
         file_(file),
         stop_(stop) {
@@ -171,7 +187,12 @@ class SourceWriter {
     if constexpr (std::is_same_v<T, float>) {
       if (heights_.type == HeightType::float32) return std::bit_cast<float>(bits);
     }
-    return static_cast<T>(are_codes(form_.type) ? heights_.code(bits) : heights_.height(bits));
+    const double number = are_codes(source_) ? heights_.code(bits) : heights_.height(bits);
+    if (!contains(range_, number)) {
+      throw Error(ErrorCode::corruption,
+                  "a height is no number of the source's type; the file is damaged", path_);
+    }
+    return static_cast<T>(number);
   }
 
   template <class T>
@@ -220,6 +241,8 @@ class SourceWriter {
   const std::string path_;
   const HeightEncoding heights_;
   const Floor& floor_;
+  const SourceNumber source_;
+  const Interval range_;
   const RasterForm& form_;
   RasterFile& file_;
   const std::stop_token& stop_;
@@ -258,11 +281,13 @@ SourceRaster source_raster_of(const Terrain& terrain, const CrsFacts& crs) {
   form.height = facts.shape.height;
   form.type = type_of(facts.source);
   form.has_signed_bytes = facts.source == SourceNumber::kInt8;
-  if (form.type == GDT_Unknown) damaged(store);
   form.geotransform = geotransform_in(told, store);
   form.is_point = told.at("pixels") == "points";
+  const bool is_told_so =
+      told.at("lost").is_null() && (form.is_point || told.at("pixels") == "areas");
+  if (!is_told_so || !is_placed_by(form.geotransform, store.facts())) damaged(store);
   form.nodata = facts.nodata;
-  if (are_codes(form.type)) {
+  if (are_codes(facts.source)) {
     form.scale = store.facts().heights.step;
     form.offset = store.facts().heights.offset;
   }

@@ -11,15 +11,6 @@
 
 namespace ptin::tools {
 
-namespace {
-
-const SourceSample& sample_at(const SampleWindow& w, std::int64_t x, std::int64_t y) {
-  const std::int64_t width = std::int64_t{w.box.max_x} - w.box.min_x + 1;
-  return w.samples[static_cast<std::size_t>((y - w.box.min_y) * width + (x - w.box.min_x))];
-}
-
-}  // namespace
-
 GroundSteps ground_steps(const AffineMap& map, const Ground& ground, double grid_y) {
   if (!ground.geographic) return {map.step_x, map.step_y};
   const MapPoint unit = ground.per_map_unit({map.origin_x, map.origin_y + map.step_y * grid_y});

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -56,6 +57,13 @@ struct SampleWindow {
   std::vector<SourceSample> samples;
   bool is_grid = false;  ///< One sample at each grid point of `box`, row 0 in the south.
 };
+
+/// The sample at a grid point of the box.  REQUIRES: is_grid
+[[nodiscard]] inline const SourceSample& sample_at(const SampleWindow& w, std::int64_t x,
+                                                   std::int64_t y) {
+  const std::int64_t width = std::int64_t{w.box.max_x} - w.box.min_x + 1;
+  return w.samples[static_cast<std::size_t>((y - w.box.min_y) * width + (x - w.box.min_x))];
+}
 
 /// The box of a source's outermost samples, in grid units of a terrain that may be another one.
 struct SourceExtent {

@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/query/shape/tiler.h"
 #include "engine/stop.h"
+#include "storage/floor.h"
 #include "tools/facts/human.h"
 #include "tools/verify/border_lines.h"
 #include "tools/verify/lone_points.h"
@@ -66,6 +67,7 @@ class Verifier {
   [[nodiscard]] double border_moves(double allowed) const;
   [[nodiscard]] bool reaches(const GridBox& box, double moved) const;
   [[nodiscard]] BorderLines source_border(const SampleWindow& window, const GridBox& box) const;
+  void judge_lone_heights(const SampleWindow& window, const GridBox& box);
   void judge_class(const GridBox& box, const SourceSample& sample, double allowed,
                    ToleranceCheck& check);
   void judge_border(const GridBox& box, double allowed, ToleranceCheck& check);
@@ -270,6 +272,7 @@ void Verifier::drop_lone_points(SampleWindow& window) const {
 void Verifier::check_window(const GridBox& box) {
   SampleWindow window = read_with_margin(box);
   drop_lone_points(window);
+  if (window.is_grid) judge_lone_heights(window, box);
   border_.reset();
   if (!facts_.free_of_voids) border_.emplace(source_border(window, box));
   const std::vector<SurfacePoint> anywhere = random_points(box);
@@ -294,6 +297,33 @@ void Verifier::check_window(const GridBox& box) {
     judge_lines_of(refined.tin, on_lines, allowed, check);
     if (check.tolerance) judge_random_points(box, anywhere, refined, allowed, check);
   }
+}
+
+/// The heights of lone samples are those of no vertex: only the raster's own in the file have them.
+void Verifier::judge_lone_heights(const SampleWindow& window, const GridBox& box) {
+  const Floor* const floor = terrain_.store().floor();
+  if (floor == nullptr || std::ranges::none_of(window.samples, &SourceSample::is_lone)) return;
+  const FloorShape& shape = floor->facts().shape;
+  Floor::Recent recent;
+  IoCounters counters;
+  floor->visit(
+      [&](const Floor::Bounds& b) { return meets(b.box, box); },
+      [&](const Floor::TileAt& at, const FloorTile& tile) {
+        for (const FloorTile::Lone& lone : tile.lone) {
+          const GridPoint p{
+              static_cast<std::int32_t>(shape.first_of(at.column) + lone.place % tile.width),
+              static_cast<std::int32_t>(shape.first_of(at.row) + lone.place / tile.width)};
+          if (!contains(box, p)) continue;
+          const SourceSample& sample = sample_at(window, p.x, p.y);
+          const double height = facts_.heights.height(floor->numbers().bits(lone.height));
+          if (std::abs(height - sample.height) <= slack_) continue;
+          fault(nullptr, "the lone sample at " + place_text(p.x, p.y) + " has height " +
+                             short_number(sample.height) + " in the source, and " +
+                             short_number(height) + " in the heights of the raster");
+        }
+        return true;
+      },
+      recent, counters);
 }
 
 std::vector<Finding> Verifier::findings(const Tin& tin, const SampleWindow& window) const {
