@@ -146,7 +146,7 @@ std::vector<SectionInfo> StoreFile::sections() const {
   return result;
 }
 
-StoreFile::~StoreFile() = default;
+StoreFile::~StoreFile() { delete floor_.load(); }
 
 const std::string& StoreFile::path() const noexcept { return file_->path(); }
 const StoreFacts& StoreFile::facts() const noexcept { return front_->facts; }
@@ -170,12 +170,16 @@ const Floor* StoreFile::floor() const {
   if (!front_->floor) {
     return nullptr;
   }
-  // A lock, since a damaged root throws, and sanitizers lose track of a thread that throws out of std::call_once.
-  const std::scoped_lock lock(floor_mutex_);
-  if (floor_ == nullptr) {
-    floor_ = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts);
+  // Threads that come at once may each read the root, and the first one's stays: so one that finds it damaged throws, and
+  // keeps nobody waiting.
+  const Floor* floor = floor_.load(std::memory_order_acquire);
+  if (floor == nullptr) {
+    auto made = std::make_unique<const Floor>(*file_, *front_->floor, front_->facts);
+    if (floor_.compare_exchange_strong(floor, made.get(), std::memory_order_acq_rel)) {
+      floor = made.release();
+    }
   }
-  return floor_.get();
+  return floor;
 }
 
 StoreFile::PageInfo StoreFile::page_info(PageId id) const {

@@ -4,10 +4,10 @@
 // bytes.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -159,8 +159,7 @@ class StoreFile {
   std::unique_ptr<DescribedPageStore> pages_;
   std::unique_ptr<PackedRTree> index_;
   std::unique_ptr<PointDirectory> directory_;
-  mutable std::mutex floor_mutex_;
-  mutable std::unique_ptr<const Floor> floor_;  ///< Made when it is first asked for.
+  mutable std::atomic<const Floor*> floor_ = nullptr;  ///< Owned; made when it is first asked for.
 };
 
 }  // namespace ptin

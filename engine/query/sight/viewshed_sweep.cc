@@ -20,7 +20,7 @@ constexpr std::uint64_t kVertexBytes = sizeof(Offset) + 1 + sizeof(VertexId);
 constexpr std::uint64_t kTriangleBytes = 1 + 1 + sizeof(TriangleId);
 /// A centre, an offset, differences and products of these round by 2^-53 of a coordinate each, and are not
 /// more than eight.
-constexpr double kRoundings = 0x1p-50;
+constexpr double kCrossRoundings = 0x1p-50;
 constexpr double kMostBuckets = 65536;
 constexpr std::uint64_t kBucketBytes = 192;  // of the horizon, with a few pieces in each
 
@@ -444,7 +444,7 @@ bool Viewer::is_on_line(const Offset& a, const Offset& b, const Offset& p) const
   const double most_x = std::abs(first_x_) + std::abs(p.x) + std::abs(a.x);
   const double most_y = std::abs(first_y_) + std::abs(p.y) + std::abs(a.y);
   return std::abs(across * (p.y - a.y) - up * (p.x - a.x)) <=
-         kRoundings * (std::abs(across) * most_y + std::abs(up) * most_x);
+         kCrossRoundings * (std::abs(across) * most_y + std::abs(up) * most_x);
 }
 
 /// The place of a centre in a triangle; none: it is outside, or on a side that the ray reaches from beyond.
