@@ -417,12 +417,12 @@ void Viewer::look_at_box(TriangleId t, const Horizon& horizon,
   };
   // Places of at most 2e5 pixels round by less than 1e-10. A centre that is off a side by its rounding
   // must be in the box of one of the triangles there: place_in() says of which.
-  constexpr double kSlack = 1e-9;
+  constexpr double kOffSide = 1e-9;
   const auto from = [&](double place, std::uint32_t size) {
-    return clamp(std::ceil(place - kSlack), size);
+    return clamp(std::ceil(place - kOffSide), size);
   };
   const auto to = [&](double place, std::uint32_t size) {
-    return clamp(std::floor(place + kSlack), size);
+    return clamp(std::floor(place + kOffSide), size);
   };
   const std::int64_t from_column = from((left - first_x_) / pixel_x_, result_.width);
   const std::int64_t to_column = to((right - first_x_) / pixel_x_, result_.width);
