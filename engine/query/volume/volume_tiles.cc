@@ -19,7 +19,7 @@ namespace ptin {
 
 namespace {
 
-constexpr double kSlack = 16;  // of the bounds of sums, for what rounding adds
+constexpr double kSumSlack = 16;  // of the bounds of sums, for what rounding adds
 
 /// What all tiles need of one walk.
 struct Walk {
@@ -336,8 +336,8 @@ VolumeTotals totals_for(const VolumeSide& side, std::vector<double> most_heights
       is_empty(b) ? 0.0
                   : side.plane.length_at_most({double{1} * b.min_x, double{1} * b.min_y},
                                               {double{1} * b.max_x, double{1} * b.max_y});
-  for (double& most : most_heights) most *= kSlack;
-  return {kSlack * area, most_heights, longest};
+  for (double& most : most_heights) most *= kSumSlack;
+  return {kSumSlack * area, most_heights, longest};
 }
 
 }  // namespace
