@@ -59,7 +59,7 @@ inline std::vector<std::uint64_t> some_of_first(std::uint64_t count, std::size_t
 #define TEST_IN_RELEASE(suite, name) [[maybe_unused]] static void suite##_##name##_in_release()
 #define TEST_F_IN_RELEASE(suite, name)               \
   class suite##_##name##_in_release : public suite { \
-    void body();                                     \
+    [[maybe_unused]] void body();                    \
   };                                                 \
   void suite##_##name##_in_release::body()
 #else
