@@ -191,6 +191,58 @@ TEST_F(ExportSource, KeepsTheScaleOfIntegers) {
   expect_back(recipe);
 }
 
+// GDAL works the numbers of such a VRT out in the type that is asked for, and neither rounds nor clamps them
+// to the VRT's own then.
+TEST_F(ExportSource, GivesTheNumbersOfAVrtBackAsItsOwnTypeHasThem) {
+  make(folder_.file("s.tif"), {});
+  source_ = folder_.file("s.vrt");
+  for (const auto& [type, ratio] : std::vector<std::pair<std::string, std::string>>{
+           {"Byte", "0.75"}, {"Int16", "97.25"}, {"UInt32", "0.71"}, {"Float32", "0.71"}}) {
+    SCOPED_TRACE(type);
+    write_file(source_,
+               R"(<VRTDataset rasterXSize="90" rasterYSize="70"><SRS>EPSG:32611</SRS>)"
+               "<GeoTransform>500000.1, 30, 0, 4000000.2, 0, -30</GeoTransform>"
+               R"(<VRTRasterBand dataType=")" +
+                   type +
+                   R"(" band="1"><ComplexSource><SourceFilename relativeToVRT="1">s.tif)"
+                   "</SourceFilename><SourceBand>1</SourceBand><ScaleOffset>0.25</ScaleOffset>"
+                   "<ScaleRatio>" +
+                   ratio + "</ScaleRatio></ComplexSource></VRTRasterBand></VRTDataset>");
+    build();
+    expect_done({"verify", store_, "--against", source_, "-q"});
+    expect_done({"export", store_, "--source", "-o", made_, "--overwrite", "-q"});
+    const Whole made = read_whole(made_), source = read_whole(source_);
+    EXPECT_EQ(made.type, type);
+    EXPECT_TRUE(made.samples == source.samples);
+  }
+}
+
+// Where a source of a VRT covers nothing GDAL hands out the nodata value, and a zero where there is none.
+TEST_F(ExportSource, GivesAVrtBackWhereGdalTellsWhatItDoesNotCover) {
+  Recipe recipe;
+  recipe.type = "Float32";
+  make(folder_.file("s.tif"), recipe);
+  source_ = folder_.file("s.vrt");
+  for (const bool is_told : {true, false}) {
+    write_file(source_,
+               R"(<VRTDataset rasterXSize="100" rasterYSize="70"><SRS>EPSG:32611</SRS>)"
+               "<GeoTransform>500000.1, 30, 0, 4000000.2, 0, -30</GeoTransform>"
+               R"(<VRTRasterBand dataType="Float32" band="1">)" +
+                   std::string(is_told ? "<NoDataValue>-9999</NoDataValue>" : "") +
+                   R"(<SimpleSource><SourceFilename relativeToVRT="1">s.tif</SourceFilename>)"
+                   R"(<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="90" ySize="70"/>)"
+                   R"(<DstRect xOff="10" yOff="0" xSize="90" ySize="70"/></SimpleSource>)"
+                   "</VRTRasterBand></VRTDataset>");
+    build();
+    if (!is_told) {
+      expect_lost("what stood in each of the samples");
+      continue;
+    }
+    expect_done({"export", store_, "--source", "-o", made_, "--overwrite", "-q"});
+    EXPECT_TRUE(read_whole(made_).samples == read_whole(source_).samples);
+  }
+}
+
 TEST_F(ExportSource, TellsWhatItWrote) {
   make(source_, {});
   build();
