@@ -377,5 +377,36 @@ TEST_F(ExportType, RoundsHeightsToIt) {
   EXPECT_EQ(read_whole(made_).type, "Int16");
 }
 
+TEST_F(ExportType, LeavesNoVoidAHeightNorAHeightAVoid) {
+  Recipe recipe;
+  recipe.type = "Float32";
+  recipe.nodata = 5.0;
+  const auto exported = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"export", store_,  "-o",          made_,
+                                    "--type", "Int16", "--overwrite", "-q"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_ptin(all);
+  };
+  // -9998.7 would be rounded to -9999; heights from -32768 up leave the largest number alone.
+  for (const auto& [least, nodata] :
+       std::vector<std::pair<double, double>>{{-9000, -9999}, {-9998.7, -32768}, {-32768, 32767}}) {
+    recipe.value = [least = least](int x, int y) {
+      return x > 3 && x < 9 && y < 9 ? 5.0 : least + (x + y) % 9 * (x == 50 ? 3000 : 1);
+    };
+    make(source_, recipe);
+    build();
+    EXPECT_EQ(exported({}).status, 0);
+    EXPECT_EQ(read_whole(made_).nodata, nodata);
+  }
+  for (const char* none : {"nan", "1e30", "0.5", "-32769"}) {
+    expect_refusal(exported({"--nodata", none}), 2, "no Int16 is");
+  }
+  EXPECT_EQ(exported({"--nodata", "77"}).status, 0);
+  recipe.value = [](int x, int y) { return x == 0 ? (y == 0 ? -32768 : 32767) : 5.5 + x; };
+  make(source_, recipe);
+  build();
+  expect_refusal(exported({}), 2, "take up all of Int16");
+}
+
 }  // namespace
 }  // namespace ptin::tools

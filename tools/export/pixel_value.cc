@@ -24,14 +24,20 @@ GDALDataType type_of_pixels(const StoreFacts& facts, PixelValue value) {
   return fits ? GDT_Float32 : GDT_Float64;
 }
 
+bool may_be_pixel(const StoreFacts& facts, double number) noexcept {
+  return facts.min_height - 1 <= number && number <= facts.max_height + 1;
+}
+
 double default_nodata(const StoreFacts& facts, PixelValue value,
                       std::optional<GDALDataType> type) noexcept {
   constexpr double kUsual = -9999.0;
   if (value == PixelValue::kHillshade) return 0.0;
-  if (value != PixelValue::kHeight || !(facts.min_height <= kUsual && kUsual <= facts.max_height))
-    return kUsual;
-  if (type == GDT_Int16) return std::numeric_limits<std::int16_t>::lowest();
-  if (type == GDT_Int32) return std::numeric_limits<std::int32_t>::lowest();
+  if (value != PixelValue::kHeight || !may_be_pixel(facts, kUsual)) return kUsual;
+  using Short = std::numeric_limits<std::int16_t>;
+  using Int = std::numeric_limits<std::int32_t>;
+  if (type == GDT_Int16)
+    return may_be_pixel(facts, Short::lowest()) ? Short::max() : Short::lowest();
+  if (type == GDT_Int32) return may_be_pixel(facts, Int::lowest()) ? Int::max() : Int::lowest();
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
