@@ -196,6 +196,58 @@ TEST_F(ExportSource, KeepsTheScaleOfIntegers) {
   expect_back(recipe);
 }
 
+// GDAL works the numbers of such a VRT out in the type that is asked for, and neither rounds nor clamps them
+// to the VRT's own then.
+TEST_F(ExportSource, GivesTheNumbersOfAVrtBackAsItsOwnTypeHasThem) {
+  make(folder_.file("s.tif"), {});
+  source_ = folder_.file("s.vrt");
+  for (const auto& [type, ratio] : std::vector<std::pair<std::string, std::string>>{
+           {"Byte", "0.75"}, {"Int16", "97.25"}, {"UInt32", "0.71"}, {"Float32", "0.71"}}) {
+    SCOPED_TRACE(type);
+    write_file(source_,
+               R"(<VRTDataset rasterXSize="90" rasterYSize="70"><SRS>EPSG:32611</SRS>)"
+               "<GeoTransform>500000.1, 30, 0, 4000000.2, 0, -30</GeoTransform>"
+               R"(<VRTRasterBand dataType=")" +
+                   type +
+                   R"(" band="1"><ComplexSource><SourceFilename relativeToVRT="1">s.tif)"
+                   "</SourceFilename><SourceBand>1</SourceBand><ScaleOffset>0.25</ScaleOffset>"
+                   "<ScaleRatio>" +
+                   ratio + "</ScaleRatio></ComplexSource></VRTRasterBand></VRTDataset>");
+    build();
+    expect_done({"verify", store_, "--against", source_, "-q"});
+    expect_done({"export", store_, "--source", "-o", made_, "--overwrite", "-q"});
+    const Whole made = read_whole(made_), source = read_whole(source_);
+    EXPECT_EQ(made.type, type);
+    EXPECT_TRUE(made.samples == source.samples);
+  }
+}
+
+// Where a source of a VRT covers nothing GDAL hands out the nodata value, and a zero where there is none.
+TEST_F(ExportSource, GivesAVrtBackWhereGdalTellsWhatItDoesNotCover) {
+  Recipe recipe;
+  recipe.type = "Float32";
+  make(folder_.file("s.tif"), recipe);
+  source_ = folder_.file("s.vrt");
+  for (const bool is_told : {true, false}) {
+    write_file(source_,
+               R"(<VRTDataset rasterXSize="100" rasterYSize="70"><SRS>EPSG:32611</SRS>)"
+               "<GeoTransform>500000.1, 30, 0, 4000000.2, 0, -30</GeoTransform>"
+               R"(<VRTRasterBand dataType="Float32" band="1">)" +
+                   std::string(is_told ? "<NoDataValue>-9999</NoDataValue>" : "") +
+                   R"(<SimpleSource><SourceFilename relativeToVRT="1">s.tif</SourceFilename>)"
+                   R"(<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="90" ySize="70"/>)"
+                   R"(<DstRect xOff="10" yOff="0" xSize="90" ySize="70"/></SimpleSource>)"
+                   "</VRTRasterBand></VRTDataset>");
+    build();
+    if (!is_told) {
+      expect_lost("what stood in each of the samples");
+      continue;
+    }
+    expect_done({"export", store_, "--source", "-o", made_, "--overwrite", "-q"});
+    EXPECT_TRUE(read_whole(made_).samples == read_whole(source_).samples);
+  }
+}
+
 TEST_F(ExportSource, TellsWhatItWrote) {
   make(source_, {});
   build();
@@ -358,11 +410,6 @@ TEST_F(ExportType, RoundsHeightsToIt) {
   EXPECT_EQ(exported("Int16", {"--window", "501000", "3998500", "502000", "3999500"}).at("exact"),
             false);
   EXPECT_EQ(read_whole(made_).type, "Int16");
-  for (const char* nodata : {"-32769", "-9999.5", "nan"}) {
-    expect_refusal(run_ptin({"export", store_, "-o", folder_.file("no.tif"), "--type", "Int16",
-                             "--nodata", nodata, "-q"}),
-                   2, "--nodata");
-  }
 }
 
 TEST_F(ExportType, ChoosesANodataThatNoHeightIsRoundedTo) {
@@ -375,6 +422,37 @@ TEST_F(ExportType, ChoosesANodataThatNoHeightIsRoundedTo) {
   EXPECT_EQ(read_whole(made_).nodata, -32768.0);
   expect_done({"export", store_, "-o", made_, "--type", "Float64", "-q", "--overwrite"});
   EXPECT_EQ(read_whole(made_).nodata, -9999.0);
+}
+
+TEST_F(ExportType, LeavesNoVoidAHeightNorAHeightAVoid) {
+  Recipe recipe;
+  recipe.type = "Float32";
+  recipe.nodata = 5.0;
+  const auto exported = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"export", store_,  "-o",          made_,
+                                    "--type", "Int16", "--overwrite", "-q"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_ptin(all);
+  };
+  // -9998.7 would be rounded to -9999; heights from -32768 up leave the largest number alone.
+  for (const auto& [least, nodata] :
+       std::vector<std::pair<double, double>>{{-9000, -9999}, {-9998.7, -32768}, {-32768, 32767}}) {
+    recipe.value = [least = least](int x, int y) {
+      return x > 3 && x < 9 && y < 9 ? 5.0 : least + (x + y) % 9 * (x == 50 ? 3000 : 1);
+    };
+    make(source_, recipe);
+    build();
+    EXPECT_EQ(exported({}).status, 0);
+    EXPECT_EQ(read_whole(made_).nodata, nodata);
+  }
+  for (const char* none : {"nan", "1e30", "-9999.5", "-32769"}) {
+    expect_refusal(exported({"--nodata", none}), 2, "no Int16 is");
+  }
+  EXPECT_EQ(exported({"--nodata", "77"}).status, 0);
+  recipe.value = [](int x, int y) { return x == 0 ? (y == 0 ? -32768 : 32767) : 5.5 + x; };
+  make(source_, recipe);
+  build();
+  expect_refusal(exported({}), 2, "take up all of Int16");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Masks of samples of a raster, beside samples of every type: alpha bands, masks, nodata values
 // in other digits than the type has. `ptin verify --against` reads the same by code of its own.
 #include <cfloat>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -117,6 +118,13 @@ TEST_F(RasterValidity, NodataIsComparedAsTheTypeHoldsItWhoeverDeclaresIt) {
         expect_one_void("s.vrt", {"--nodata", written});
       }
     }
+  }
+}
+
+TEST_F(RasterValidity, InfiniteNodataIsThatAlone) {
+  for (const std::string type : {"Float32", "Float64"}) {
+    make_base(type, std::numeric_limits<double>::infinity());
+    expect_one_void("base.tif", {"--nodata", "inf"});
   }
 }
 

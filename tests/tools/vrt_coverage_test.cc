@@ -120,6 +120,7 @@ TEST_F(VrtCoverage, LooksThroughVrtsInVrts) {
     make_vrt("right.vrt", type, source("b.tif", 8));
     make_vrt("both.vrt", type, source("left.vrt", 0, "", 12) + source("right.vrt", 0, "", 12));
     expect_void("both.vrt", 16);  // and the right one does not hide the left one
+    EXPECT_EQ(answer_of({"info", store_, "--json"}).at("heights").at("min"), 1.0);
     make_vrt("third.vrt", type, source("both.vrt", 0, "", 12));
     expect_void("third.vrt", 16);
     make_vrt("scaled.vrt", type,

@@ -24,16 +24,24 @@ GDALDataType type_of_pixels(const StoreFacts& facts, PixelValue value) {
   return fits ? GDT_Float32 : GDT_Float64;
 }
 
+bool may_be_pixel(const StoreFacts& facts, double number,
+                  std::optional<GDALDataType> type) noexcept {
+  // Heights beside it are rounded to it where pixels are whole.
+  const double off = type && GDALDataTypeIsInteger(*type) ? 0.5 : 0.0;
+  return facts.min_height - off <= number && number <= facts.max_height + off;
+}
+
 double default_nodata(const StoreFacts& facts, PixelValue value,
                       std::optional<GDALDataType> type) noexcept {
   constexpr double kUsual = -9999.0;
   if (value == PixelValue::kHillshade) return 0.0;
-  // Heights beside it are rounded to it where pixels are whole.
-  const double off = type == GDT_Int16 || type == GDT_Int32 ? 0.5 : 0.0;
-  const bool is_taken = facts.min_height - off <= kUsual && kUsual <= facts.max_height + off;
-  if (value != PixelValue::kHeight || !is_taken) return kUsual;
-  if (type == GDT_Int16) return std::numeric_limits<std::int16_t>::lowest();
-  if (type == GDT_Int32) return std::numeric_limits<std::int32_t>::lowest();
+  if (value != PixelValue::kHeight || !may_be_pixel(facts, kUsual, type)) return kUsual;
+  using Short = std::numeric_limits<std::int16_t>;
+  using Int = std::numeric_limits<std::int32_t>;
+  if (type == GDT_Int16)
+    return may_be_pixel(facts, Short::lowest(), type) ? Short::max() : Short::lowest();
+  if (type == GDT_Int32)
+    return may_be_pixel(facts, Int::lowest(), type) ? Int::max() : Int::lowest();
   return static_cast<double>(std::numeric_limits<float>::lowest());
 }
 

@@ -32,9 +32,13 @@ struct PixelContent {
 /// a vertex; of slopes and aspects Float32, of hillshades bytes.
 [[nodiscard]] GDALDataType type_of_pixels(const StoreFacts& facts, PixelValue value);
 
-/// A value for pixels without one: 0 of hillshades, else -9999; of heights the lowest float when
-/// -9999 lies between the terrain's least and largest height as the type has them, or the least number of
-/// an integer type.
+/// True when a height of the terrain may be this number as a pixel.
+/// @param type  None: type_of_pixels().
+[[nodiscard]] bool may_be_pixel(const StoreFacts& facts, double number,
+                                std::optional<GDALDataType> type) noexcept;
+
+/// A value for pixels without one: 0 of hillshades, else -9999; of heights, where -9999 may be one, the
+/// lowest float, or of an integer type the least number, or else the largest, which may be one too.
 /// @param type  None: type_of_pixels().
 [[nodiscard]] double default_nodata(const StoreFacts& facts, PixelValue value,
                                     std::optional<GDALDataType> type = std::nullopt) noexcept;

@@ -20,6 +20,7 @@
 #include "tools/export/source_export.h"
 #include "tools/export/tin_sink.h"
 #include "tools/facts/answers.h"
+#include "tools/facts/human.h"
 #include "tools/output/file_name.h"
 #include "tools/output/output_file.h"
 #include "tools/progress.h"
@@ -297,13 +298,19 @@ void warn_of_triangles(const Exported& made, const ExportFormat& format, const S
   }
 }
 
-/// Refuses a value that pixels of whole numbers do not have.
-/// @param type  None: they are floats.
-void check_nodata(double nodata, std::optional<GDALDataType> type) {
-  const double most = type == GDT_Int16 ? 0x1p15 : 0x1p31;
-  const bool is_whole = type == GDT_Int16 || type == GDT_Int32;
-  if (is_whole && !(nodata >= -most && nodata < most && nodata == std::trunc(nodata))) {
-    refuse(std::string("is no number of ") + GDALGetDataTypeName(*type), "--nodata");
+/// Refuses a nodata value that pixels of a type cannot have, and one of no choice that may be a height.
+void check_nodata(double nodata, bool is_given, GDALDataType type, const StoreFacts& facts) {
+  if (!GDALDataTypeIsInteger(type)) return;
+  const std::string name = GDALGetDataTypeName(type);
+  if (is_given && GDALAdjustValueToDataType(type, nodata, nullptr, nullptr) != nodata) {
+    refuse(
+        "no " + name + " is " + short_number(nodata) + ": pixels without surface would be heights",
+        "--nodata");
+  }
+  if (!is_given && may_be_pixel(facts, nodata, type)) {
+    refuse("the heights take up all of " + name +
+               ": give --nodata a number that is none, or another type",
+           "--type");
   }
 }
 
@@ -313,17 +320,10 @@ RasterTarget raster_target(const ExportFormat& format, const ExportOptions& opti
   const PixelContent content = content_of(options, format);
   std::optional<GDALDataType> type;
   if (!options.type.empty()) type = GDALGetDataTypeByName(options.type.c_str());
-  if (options.nodata) check_nodata(*options.nodata, type);
-  return {options.out.output,
-          options.out.overwrite,
-          format.is_cog,
-          content,
-          options.nodata.value_or(default_nodata(store.facts(), content.value, type)),
-          options.creation_options,
-          crs_facts(store),
-          memory.buffers,
-          memory.index,
-          type};
+  const double nodata = options.nodata.value_or(default_nodata(store.facts(), content.value, type));
+  if (type) check_nodata(nodata, options.nodata.has_value(), *type, store.facts());
+  return {options.out.output,       options.out.overwrite, format.is_cog,  content,      nodata,
+          options.creation_options, crs_facts(store),      memory.buffers, memory.index, type};
 }
 
 Exported export_as(const ExportFormat& format, const ExportOptions& options, const Terrain& terrain,

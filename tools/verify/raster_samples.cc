@@ -125,11 +125,41 @@ bool is_signed_byte(GDALRasterBand& band) {
   return type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
+struct PixelWindow {
+  int column, row, width, height;
+};
+
+/// Reads numbers of floats as their type has them, and others as doubles.
+CPLErr read_numbers(GDALRasterBand& band, const PixelWindow& w, std::vector<double>& values) {
+  const bool is_float = band.GetRasterDataType() == GDT_Float32;
+  std::vector<float> floats(is_float ? values.size() : 0);
+  void* const to = is_float ? static_cast<void*>(floats.data()) : values.data();
+  const CPLErr status =
+      band.RasterIO(GF_Read, w.column, w.row, w.width, w.height, to, w.width, w.height,
+                    is_float ? GDT_Float32 : GDT_Float64, 0, 0, nullptr);
+  if (is_float) std::copy(floats.begin(), floats.end(), values.begin());
+  return status;
+}
+
+/// Numbers as the type of their band has them. GDAL works those of a VRT out in the type that is asked
+/// for, and neither rounds nor clamps them to the band's own.
+/// @param has_gaps  NaN stays: no source is there.
+void take_type(GDALDataType type, bool has_gaps, std::vector<double>& values) {
+  const int size = GDALGetDataTypeSizeBytes(type);
+  for (double& value : values) {
+    if (has_gaps && std::isnan(value)) continue;
+    double stored = 0.0;  // of any type
+    GDALCopyWords(&value, GDT_Float64, 0, &stored, type, size, 1);
+    GDALCopyWords(&stored, type, size, &value, GDT_Float64, 0, 1);
+  }
+}
+
 /// True where a stored value is the nodata value, as the file's type may have rounded that. Floats of
 /// fewer bits than Float32 are looked at by their own last place.
 bool is_nodata(double stored, double nodata, GDALDataType type, int bits_of_float) {
   if (stored == nodata) return true;
   if (type != GDT_Float32 && type != GDT_Float64) return false;
+  if (type == GDT_Float64 && std::isinf(nodata)) return false;
   constexpr double kHasFewDigits = 1e30;  // from here on a nodata value has but three sure digits
   if (std::abs(nodata) >= kHasFewDigits) {
     const bool overflows = type == GDT_Float32 && std::abs(nodata) >= 3.41e38;
@@ -178,8 +208,9 @@ void RasterSamples::read_file(SampledRaster& file, SampleWindow& window) const {
   std::vector<std::uint8_t> mask(count, 255);
   GDALRasterBand& band = *file.heights;
   GDALRasterBand& read_from = file.backed ? *file.backed->GetRasterBand(band.GetBand()) : band;
-  CPLErr status = read_from.RasterIO(GF_Read, column, row, width, height, values.data(), width,
-                                     height, GDT_Float64, 0, 0, nullptr);
+  CPLErr status = read_numbers(read_from, {column, row, width, height}, values);
+  if (EQUAL(file.data->GetDriverName(), "VRT"))
+    take_type(band.GetRasterDataType(), file.backed != nullptr, values);
   // A nodata value given at the build takes the place of the file's own; other masks stay. A mask
   // that stands for the band's nodata value alone is left to is_nodata(), one of alpha to its band.
   const int flags = band.GetMaskFlags();

@@ -67,11 +67,11 @@ class RasterMosaic {
   /// Memory: none for one file; for several the values of one file at a time.
   template <class T>
   void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
-  /// As RasterPart::are_voids_alike().  REQUIRES: is_one_file()
+  /// As RasterPart::gives_back().  REQUIRES: is_one_file(), uncropped
   template <class T>
-  [[nodiscard]] bool are_voids_alike(std::span<const T> values,
-                                     std::span<const std::uint8_t> valid) const {
-    return parts_[0].part.are_voids_alike(values, valid);
+  [[nodiscard]] bool gives_back(const SampleRange& window, std::span<const T> values,
+                                std::span<const std::uint8_t> valid) {
+    return parts_[0].part.gives_back(window, values, valid);
   }
 
  private:

@@ -2,6 +2,7 @@
 #include "engine/construct/raster/raster_part.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
@@ -27,8 +28,20 @@ constexpr double kNoHeight = 3.4028e38;
 /// does.
 constexpr std::int32_t kBackground = -2'020'304'050;
 
+/// How many numbers of a VRT are compared at once.
+constexpr std::int64_t kSamplesAtOnce = std::int64_t{1} << 17;
+
 std::string background_of(RawType raw) {
   return raw == RawType::kInt32 ? std::to_string(kBackground) : "nan";
+}
+
+template <class T>
+bool is_background(T value) {
+  if constexpr (std::is_integral_v<T>) {
+    return value == kBackground;
+  } else {
+    return std::isnan(value);
+  }
 }
 
 /// False where a stored value is as large as floats get, or infinite, or is so once scaled.
@@ -52,7 +65,7 @@ bool find_valid(std::span<const T> values, std::span<std::uint8_t> valid, const 
       is_value = is_value && !std::isnan(v);
       all_heights = all_heights && (!is_value || is_height(v, shape));
     } else {
-      is_value = is_value && !(has_background && v == kBackground);
+      is_value = is_value && !(has_background && is_background(v));
     }
     valid[i] = is_value;
   }
@@ -90,23 +103,39 @@ constexpr GDALDataType kGdalType = std::is_same_v<T, std::int32_t> ? GDT_Int32
                                    : std::is_same_v<T, double>     ? GDT_Float64
                                                                    : GDT_Byte;
 
+/// Turns rows of numbers of a smaller type, which begin where `values` does, into T in place.
+template <class T>
+void widen(std::span<T> values, std::int64_t width, GDALDataType from) {
+  const auto size = static_cast<std::int64_t>(GDALGetDataTypeSizeBytes(from));
+  std::vector<T> row(static_cast<std::size_t>(width));
+  // From the back on, since no row is longer before than after.
+  for (auto at = static_cast<std::int64_t>(values.size()); at > 0;) {
+    at -= width;
+    GDALCopyWords64(reinterpret_cast<const std::byte*>(values.data()) + at * size, from,
+                    static_cast<int>(size), row.data(), kGdalType<T>, sizeof(T), width);
+    std::copy(row.begin(), row.end(), values.begin() + at);
+  }
+}
+
 /// Reads a window of the grid from a band, and turns it to the grid's orientation.
+/// @param type  As which GDAL reads it, no larger than T.
 template <class T>
 void read_band(GDALRasterBand& band, const RasterShape& shape, const SampleRange& w,
-               std::span<T> values, const std::string& path) {
+               std::span<T> values, const std::string& path, GDALDataType type = kGdalType<T>) {
   const GdalSession session;
   const auto column = shape.columns_from_east ? shape.width - w.x0 - w.width : w.x0;
   const auto row = shape.rows_from_south ? w.y0 : shape.height - w.y0 - w.height;
-  const auto status = band.RasterIO(GF_Read, static_cast<int>(column), static_cast<int>(row),
-                                    static_cast<int>(w.width), static_cast<int>(w.height),
-                                    values.data(), static_cast<int>(w.width),
-                                    static_cast<int>(w.height), kGdalType<T>, 0, 0, nullptr);
+  const auto status =
+      band.RasterIO(GF_Read, static_cast<int>(column), static_cast<int>(row),
+                    static_cast<int>(w.width), static_cast<int>(w.height), values.data(),
+                    static_cast<int>(w.width), static_cast<int>(w.height), type, 0, 0, nullptr);
   if (status != CE_None) {
     throw Error(ErrorCode::io_error,
                 session.explain("cannot read the raster near column " + std::to_string(column) +
                                 ", row " + std::to_string(row)),
                 path);
   }
+  if (type != kGdalType<T>) widen(values, w.width, type);
   if (!shape.rows_from_south) {
     reverse_rows(values, w.width, w.height);
   }
@@ -115,6 +144,34 @@ void read_band(GDALRasterBand& band, const RasterShape& shape, const SampleRange
       std::reverse(values.begin() + y * w.width, values.begin() + (y + 1) * w.width);
     }
   }
+}
+
+/// Rounds and clamps numbers to a type of integers, as GDAL does. The background stays.
+template <class T>
+void fit_to(GDALDataType type, bool has_background, std::span<T> values) {
+  constexpr std::size_t kAtOnce = 1024;
+  std::array<double, kAtOnce> fitted;  // of any type
+  std::array<T, kAtOnce> back;
+  const int size = GDALGetDataTypeSizeBytes(type);
+  for (std::size_t from = 0; from < values.size(); from += kAtOnce) {
+    const auto part = values.subspan(from, std::min(kAtOnce, values.size() - from));
+    const auto count = static_cast<GPtrDiff_t>(part.size());
+    GDALCopyWords64(part.data(), kGdalType<T>, sizeof(T), fitted.data(), type, size, count);
+    GDALCopyWords64(fitted.data(), type, size, back.data(), kGdalType<T>, sizeof(T), count);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      if (!has_background || !is_background(part[i])) part[i] = back[i];
+    }
+  }
+}
+
+/// Reads heights from a band of a VRT. GDAL works them out in the type that is asked for, and neither
+/// rounds nor clamps them to the band's own.
+template <class T>
+void read_vrt(GDALRasterBand& band, GDALDataType own, bool has_background, const RasterShape& shape,
+              const SampleRange& w, std::span<T> values, const std::string& path) {
+  const bool is_integer = GDALDataTypeIsInteger(own) != 0;
+  read_band(band, shape, w, values, path, is_integer ? kGdalType<T> : own);
+  if (is_integer && own != kGdalType<T>) fit_to(own, has_background, values);
 }
 
 /// Refuses the first valid value of the window that is no height, if there is one.
@@ -147,6 +204,7 @@ struct RasterPart::Bands : RasterBands {
   GDALDatasetUniquePtr data;
   GDALDatasetUniquePtr backed;       ///< A VRT with a background.
   GDALRasterBand* values = nullptr;  ///< The heights, where they are read.
+  bool is_vrt = false;
 
   void look_behind(RawType raw);
 };
@@ -154,6 +212,7 @@ struct RasterPart::Bands : RasterBands {
 /// Reads a VRT so that what no source covers shows.
 void RasterPart::Bands::look_behind(RawType raw) {
   values = height;
+  is_vrt = data->GetDriver() != nullptr && EQUAL(data->GetDriverName(), "VRT");
   backed = open_with_background(*data, background_of(raw));
   if (backed == nullptr) {
     return;
@@ -226,16 +285,25 @@ void RasterPart::close() noexcept {
 }
 
 template <class T>
+void RasterPart::sign_bytes(std::span<T> values) const {
+  if (!shape_.stored.signed_bytes) return;
+  std::transform(values.begin(), values.end(), values.begin(),
+                 [](T v) { return v > T{127} ? v - T{256} : v; });
+}
+
+template <class T>
 void RasterPart::read(const SampleRange& window, std::span<T> values,
                       std::span<std::uint8_t> valid) {
   if (!is_open()) {
     open();
   }
-  read_band(*bands_->values, shape_, window, values, path_);
-  if (shape_.stored.signed_bytes) {
-    std::transform(values.begin(), values.end(), values.begin(),
-                   [](T v) { return v > T{127} ? v - T{256} : v; });
+  if (bands_->is_vrt) {
+    read_vrt(*bands_->values, bands_->height->GetRasterDataType(), bands_->backed != nullptr,
+             shape_, window, values, path_);
+  } else {
+    read_band(*bands_->values, shape_, window, values, path_);
   }
+  sign_bytes(values);
   const bool all_heights = find_valid<T>(values, valid, nodata_, shape_, bands_->backed != nullptr);
   const auto mask_out = [&]<class M>(GDALRasterBand* band, std::vector<M> mask) {
     if (band == nullptr) {
@@ -255,25 +323,42 @@ void RasterPart::read(const SampleRange& window, std::span<T> values,
 }
 
 template <class T>
-bool RasterPart::are_voids_alike(std::span<const T> values,
-                                 std::span<const std::uint8_t> valid) const {
-  // GDAL hands out the nodata value where a VRT has no source, and 0 where it has no such value either.
-  const bool has_background = std::is_integral_v<T> && shape_.nodata.has_value();
+bool RasterPart::gives_back(const SampleRange& window, std::span<const T> values,
+                            std::span<const std::uint8_t> valid) {
   const double nodata = shape_.nodata.value_or(std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const bool is_alike = valid[i] != 0 || has_bits_of(values[i], nodata) ||
-                          (has_background && static_cast<double>(values[i]) == kBackground);
-    if (!is_alike) return false;
+  if (!bands_->is_vrt) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (valid[i] == 0 && !has_bits_of(values[i], nodata)) return false;
+    }
+    return true;
+  }
+  // What GDAL hands out of the VRT itself, in its own type: another value where it covers nothing, where
+  // one source hides another, and by rounding.
+  std::vector<T> own;
+  const std::int64_t rows_at_once = std::max<std::int64_t>(1, kSamplesAtOnce / window.width);
+  for (std::int64_t y = 0; y < window.height; y += rows_at_once) {
+    const SampleRange strip{window.x0, window.y0 + y, window.width,
+                            std::min(rows_at_once, window.height - y)};
+    own.resize(static_cast<std::size_t>(strip.samples()));
+    read_band<T>(*bands_->height, shape_, strip, own, path_, bands_->height->GetRasterDataType());
+    sign_bytes(std::span(own));
+    const auto from = static_cast<std::size_t>(y * window.width);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const bool is_same = valid[from + i] == 0
+                               ? has_bits_of(own[i], nodata)
+                               : std::memcmp(&own[i], &values[from + i], sizeof(T)) == 0;
+      if (!is_same) return false;
+    }
   }
   return true;
 }
 
-template bool RasterPart::are_voids_alike(std::span<const std::int32_t>,
-                                          std::span<const std::uint8_t>) const;
-template bool RasterPart::are_voids_alike(std::span<const float>,
-                                          std::span<const std::uint8_t>) const;
-template bool RasterPart::are_voids_alike(std::span<const double>,
-                                          std::span<const std::uint8_t>) const;
+template bool RasterPart::gives_back(const SampleRange&, std::span<const std::int32_t>,
+                                     std::span<const std::uint8_t>);
+template bool RasterPart::gives_back(const SampleRange&, std::span<const float>,
+                                     std::span<const std::uint8_t>);
+template bool RasterPart::gives_back(const SampleRange&, std::span<const double>,
+                                     std::span<const std::uint8_t>);
 template void RasterPart::read(const SampleRange&, std::span<std::int32_t>,
                                std::span<std::uint8_t>);
 template void RasterPart::read(const SampleRange&, std::span<float>, std::span<std::uint8_t>);

@@ -81,17 +81,22 @@ class RasterPart {
   template <class T>
   void read(const SampleRange& window, std::span<T> values, std::span<std::uint8_t> valid);
 
-  /// Whether all values that are no heights follow from what is declared: they are the nodata value, or
-  /// where there is none the usual NaN, bit for bit.
-  /// @param values, valid  As read() gave them.
+  /// Whether the numbers that GDAL hands out, in the raster's own type, follow from the values and from
+  /// what is declared: void ones are the nodata value, or where there is none the usual NaN, bit for bit.
+  /// @param values, valid  As read() gave them for the window.
+  /// @throws Error io_error
+  /// Cost: of a VRT, that of reading it.
   template <class T>
-  [[nodiscard]] bool are_voids_alike(std::span<const T> values,
-                                     std::span<const std::uint8_t> valid) const;
+  [[nodiscard]] bool gives_back(const SampleRange& window, std::span<const T> values,
+                                std::span<const std::uint8_t> valid);
 
  private:
   struct Bands;
   RasterPart(const RasterPart& other);
   void open();
+  /// Turns bytes that GDAL hands out from 0 to 255 into signed ones.
+  template <class T>
+  void sign_bytes(std::span<T> values) const;
 
   std::string path_;
   std::optional<double> nodata_override_;

@@ -24,7 +24,8 @@ namespace ptin {
 
 namespace {
 
-constexpr const char* kLostVoids = "what stood in each of the samples without a height";
+constexpr const char* kLostVoids =
+    "each number of a VRT, or what stood in each of the samples without a height";
 constexpr const char* kLostNumbers = "each of the numbers that were rounded to heights";
 
 SourceNumber number_of(const StoredType& stored) {
@@ -259,7 +260,7 @@ void RasterSource::read_samples(const SampleRange& window, std::span<HeightBits>
   const std::lock_guard lock(*mutex_);
   const auto read_as = [&]<class T>(std::span<T> raw, auto to_bits) {
     mosaic_.read<T>(window, raw, valid);
-    if (kept != nullptr && !mosaic_.are_voids_alike<T>(raw, valid)) kept->lost = kLostVoids;
+    if (kept != nullptr && !mosaic_.gives_back<T>(window, raw, valid)) kept->lost = kLostVoids;
     for (std::size_t i = 0; i < heights.size(); ++i) {
       heights[i] = valid[i] ? to_bits(raw[i]) : 0;
     }

@@ -211,7 +211,9 @@ void SightLine::take_touch(const LinePoint& at) {
   const double reach = can_be_exact() ? 0.0 : facts_.file_deviation + rounding();
   const Touch touch{ray_.low(share) - ground - reach, ray_.high(share) - ground + reach,
                     ray_.middle(share) - ground, share};
-  if (touch.guess < least_touch_.guess) {
+  // Of two alike the one that comes first along the way, in whatever order they were found.
+  if (touch.guess < least_touch_.guess ||
+      (touch.guess == least_touch_.guess && share < least_touch_.at)) {
     least_touch_.guess = touch.guess;
     least_touch_.at = share;
   }

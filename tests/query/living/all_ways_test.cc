@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -14,6 +15,7 @@
 
 #include "engine/construct/build.h"
 #include "engine/error.h"
+#include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
@@ -75,6 +77,44 @@ RC_GTEST_PROP(AllWays, AnswerTheSameOfAnyRaster, (std::uint64_t seed)) {
   reference::expect_same_by_all_ways(
       terrain, {.points = 120, .splits = 120, .lines = 6, .windows = 2}, seed);
   RC_ASSERT(!testing::Test::HasFailure());
+}
+
+/// What an answer says of the line, and where.
+std::string told(const SightResult& r) {
+  std::ostringstream text;
+  text.precision(17);
+  text << static_cast<int>(r.verdict) << ' ' << r.length << ' ' << r.clearance_min << ' '
+       << r.clearance_max << ' ' << r.void_length;
+  for (const auto& at : {r.obstruction, r.clearance_at}) {
+    if (at) text << ' ' << at->distance;
+  }
+  return text.str();
+}
+
+// Of isles on one level many points of a line have the same clearance.
+TEST(AllWays, NameTheFirstPointOfLeastClearance) {
+  std::mt19937_64 random(5);
+  const test::TestFolder folder;
+  std::ofstream out(folder.file("a.asc"));
+  constexpr int kSide = 40;
+  out << "ncols 40\nnrows 40\nxllcorner -0.5\nyllcorner -0.5\ncellsize 1\nNODATA_value -9999\n";
+  for (int i = 0; i < kSide * kSide; ++i) out << (random() % 9 < 4 ? -9999 : 7) << '\n';
+  out.close();
+  BuildOptions options;
+  options.a_srs = "EPSG:32611";
+  build({folder.file("a.asc")}, folder.file("a.ptin"), options, {});
+  const Terrain terrain = Terrain::open(folder.file("a.ptin"));
+  SightRequest request;
+  request.curvature.coefficient = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto x = static_cast<double>(random() % 40), y = static_cast<double>(random() % 30);
+    const auto along = static_cast<double>(2 + random() % 8);
+    const MapPoint ends[] = {{x + along, y}, {x, y + along}, {x + along, y + along}};
+    const SightPair pair{{x, y}, 30, ends[random() % 3], 30};
+    const std::string by_heights = told(terrain.sight(pair, request, AnswerBy::kHeights));
+    EXPECT_EQ(by_heights, told(terrain.sight(pair, request, AnswerBy::kStars)));
+    EXPECT_EQ(by_heights, told(terrain.sight(pair, request, AnswerBy::kSplits)));
+  }
 }
 
 TEST(AllWays, AnswerTheSameOfRealRasters) {
