@@ -138,12 +138,12 @@ set(program_headers
     engine/construct/read/point_stream.h
     engine/construct/read/text_rows.h
     engine/construct/read/text_table.h
-    engine/construct/scratch/external_memory.h
-    engine/construct/scratch/external_sorter.h
     engine/crs/proj_messages.h
     engine/geometry/hilbert.h
     engine/query/shape/clip.h
     engine/query/shape/tiler.h
+    storage/file/external_memory.h
+    storage/file/external_sorter.h
     storage/file/file_questions.h
     storage/file_beginning.h
     storage/floor.h
