@@ -92,8 +92,6 @@ set(public_headers
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h
-    engine/query/stream/range_coder.h
-    engine/query/stream/split_code.h
     engine/query/stream/stream_format.h
     engine/query/stream/stream_reader.h
     engine/query/stream/stream_writer.h
