@@ -51,8 +51,8 @@ CellCoder::CellCoder(const Tin& base, std::vector<PendingSplit> splits, const Fr
       context_(context),
       code_(type),
       splits_(std::move(splits)),
-      ranks_((place_along_curve(base), base.vertices.size() + splits_.size())),
-      mesh_((sort(cuts), base), splits_.size()),
+      ranks_(put_in_places(base, cuts)),
+      mesh_(base, splits_.size()),
       ahead_(base, splits_.size()) {
   reserve_large(marks_, base.triangles.size() + 2 * splits_.size());
   marks_.resize(base.triangles.size(), 0);
@@ -71,6 +71,14 @@ std::uint64_t CellCoder::bytes_of(std::uint64_t base_vertices, std::uint64_t spl
   const std::uint64_t frame = FrameCuts::most_of_frame(base_vertices, splits);
   return 2 * GrowingMesh::bytes_of(all) + kOfVertex * all + splits * sizeof(PendingSplit) +
          kOfFrame * frame;
+}
+
+/// Places vertices along the curve, and sorts the splits, before there are meshes: that takes memory too.
+/// @return the number of places
+std::size_t CellCoder::put_in_places(const Tin& base, const FrameCuts& cuts) {
+  place_along_curve(base);
+  sort(cuts);
+  return base.vertices.size() + splits_.size();
 }
 
 /// Numbers the vertices of the base and of all splits along the curve.

@@ -60,6 +60,7 @@ class CellCoder {
   [[nodiscard]] std::uint64_t digest() const noexcept { return digest_; }
 
  private:
+  [[nodiscard]] std::size_t put_in_places(const Tin& base, const FrameCuts& cuts);
   void place_along_curve(const Tin& base);
   void sort(const FrameCuts& cuts);
   [[nodiscard]] std::vector<SplitTurn> turns_of(std::span<const PendingSplit> frame);
