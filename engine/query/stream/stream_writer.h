@@ -50,7 +50,7 @@ struct StreamRequest {
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.
   std::string metadata;
-  /// Folder for what does not fit the memory, 40 bytes a split, in files without a name; empty: all
+  /// Folder for what does not fit the memory, up to 55 bytes a split, in files without a name; empty: all
   /// has to fit.
   std::string temporary_folder;
   /// Threads that work on what does not fit; the bytes are the same for any number.
