@@ -92,8 +92,6 @@ set(public_headers
     engine/query/sight/curvature.h
     engine/query/sight/sight.h
     engine/query/sight/viewshed.h
-    engine/query/stream/range_coder.h
-    engine/query/stream/split_code.h
     engine/query/stream/stream_format.h
     engine/query/stream/stream_reader.h
     engine/query/stream/stream_writer.h
@@ -138,12 +136,12 @@ set(program_headers
     engine/construct/read/point_stream.h
     engine/construct/read/text_rows.h
     engine/construct/read/text_table.h
-    engine/construct/scratch/external_memory.h
-    engine/construct/scratch/external_sorter.h
     engine/crs/proj_messages.h
     engine/geometry/hilbert.h
     engine/query/shape/clip.h
     engine/query/shape/tiler.h
+    storage/file/external_memory.h
+    storage/file/external_sorter.h
     storage/file/file_questions.h
     storage/file_beginning.h
     storage/floor.h

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Builds under a limit that the system enforces: RLIMIT_DATA counts every private page that may be
+// Builds and streams under a limit that the system enforces: RLIMIT_DATA counts every private page that may be
 // written, touched or not, so a build needs --memory and a margin for what is reserved and never
 // used: stacks of threads, arenas of the heap, the data of libraries.
 #include <array>
@@ -121,6 +121,22 @@ TEST_F(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
                     "-q", repair});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
+}
+
+/// Whole it would take some 700 MB.
+TEST_F(MemoryLimitSlow, AStreamKeepsWithinItsMemoryAndIsTheSame) {
+  const TestFolder folder;
+  make_hills(folder);
+  const std::string store = folder.file("t.ptin");
+  ASSERT_EQ(spawn_ptin({"build", folder.file("dem.tif"), "-o", store, "-q"}).status, 0);
+  ASSERT_EQ(spawn_ptin({"stream", store, "-o", folder.file("whole.pts")}).status, 0);
+  constexpr rlim_t kMemory = 64;
+  const DataLimit limit(kMemory * kMiB + kMargin);
+  const auto outcome = spawn_ptin({"stream", store, "-o", folder.file("parts.pts"), "--threads",
+                                   "2", "--memory", std::to_string(kMemory) + "M"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(testing::read_file(folder.file("parts.pts")) ==
+              testing::read_file(folder.file("whole.pts")));
 }
 
 /// So the others do not pass because a build is not held to the limit.

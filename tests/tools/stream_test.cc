@@ -70,6 +70,24 @@ TEST_F(StreamCli, BringsTheSameMeshAsRefineInFewBytes) {
   }
 }
 
+/// What does not fit the memory goes through files without a name.
+TEST_F(StreamCli, IsTheSameInAnyMemory) {
+  build("coast_257.tif");
+  const std::string t = file("t.ptin");
+  answer({"stream", t, "--have-error", "50", "-o", file("all.pts")});
+  for (const char* threads : {"1", "2"}) {
+    const Outcome small = run_ptin({"stream", t, "--have-error", "50", "-o", "-", "--memory", "4M",
+                                    "--threads", threads, "--tmp", folder.file("")});
+    EXPECT_EQ(small.status, 0) << small.err;
+    EXPECT_TRUE(small.out == read_file(file("all.pts"))) << threads;
+  }
+  const Outcome lost =
+      run_ptin({"stream", t, "-o", file("lost.pts"), "--memory", "4M", "--tmp", file("nowhere")});
+  EXPECT_EQ(lost.status, 3) << lost.err;
+  EXPECT_NE(lost.err.find("nowhere"), std::string::npos) << lost.err;
+  EXPECT_FALSE(std::filesystem::exists(file("lost.pts")));
+}
+
 TEST_F(StreamCli, ACutStreamIsAMeshAndSaysHowToGetTheRest) {
   build("mountains_257.tif");
   const json sent = answer({"stream", file("t.ptin"), "--error", "1", "-o", file("s.pts")});

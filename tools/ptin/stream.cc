@@ -8,6 +8,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
+#include "storage/file/file_questions.h"
 #include "tools/ask/questions.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
@@ -16,6 +17,7 @@
 #include "tools/output/standard_output.h"
 #include "tools/ptin/query_options.h"
 #include "tools/region/serving.h"
+#include "tools/thread_count.h"
 
 namespace ptin::tools {
 
@@ -26,6 +28,7 @@ struct StreamOptions {
   Serving wanted, had;
   std::string have;
   std::optional<std::uint64_t> memory;
+  int threads = 0;
   OutputOptions out;
   bool stats = false;
 };
@@ -48,6 +51,11 @@ std::vector<StreamHeld> held_of(const StreamOptions& options, const StoreFacts& 
   }
   if (options.had.given()) add(options.had, "--have-window");
   return held;
+}
+
+std::string folder_for_temporaries(const StreamOptions& options) {
+  if (!options.terrain.temporary_folder.empty()) return options.terrain.temporary_folder;
+  return options.out.output != "-" ? folder_of(options.out.output) : system_temporary_folder();
 }
 
 StreamSummary send(const StreamOptions& options, const Terrain& terrain,
@@ -94,6 +102,8 @@ int run_stream(const StreamOptions& options, const Context& context) {
   if (options.wanted.splits) request.most_splits = *options.wanted.splits;
   request.metadata = metadata_of_stream(store, options.wanted);
   request.limits = limits_of(options.memory, context);
+  request.temporary_folder = folder_for_temporaries(options);
+  request.threads = thread_count(options.threads);
   const StreamSummary summary = send(options, terrain, request);
   if (context.json) {
     const CrsFacts crs = crs_facts(store);
@@ -133,7 +143,14 @@ void add_question(ask::Parameters& rows, StreamOptions& options) {
            "What the receiver was served before, as `ptin unstream --json` prints it");
   add_output(rows, options.out, "The stream to write; - for stdout");
   rows.add("stats", &options.stats, "", "Print, on stderr, what was sent and what it cost");
-  ask::add_memory(rows, options.memory);
+  ask::add_memory(rows, options.memory,
+                  "Memory, as 512M or 2G (default 4G); what does not fit goes to --tmp");
+  rows.add("tmp", &options.terrain.temporary_folder, "DIR",
+           "Folder for temporary files: what does not fit in --memory (default: OUT's folder)");
+  ask::add_threads(
+      rows, options.threads,
+      "Threads for what does not fit in --memory (default: one a processor that "
+      "affinity and cgroups leave this process); the bytes are the same for any number");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "engine/construct/scratch/external_sorter.h"
+#include "storage/file/external_sorter.h"
 #include "storage/file/file_layer.h"
 #include "tools/verify/source_samples.h"
 

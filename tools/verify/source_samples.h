@@ -22,8 +22,8 @@
 
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/read/point_stream.h"
-#include "engine/construct/scratch/external_memory.h"
 #include "engine/geometry/box.h"
+#include "storage/file/external_memory.h"
 #include "storage/store_file.h"
 #include "tools/verify/line_samples.h"
 

@@ -13,9 +13,9 @@
 #include "engine/construct/read/input_kind.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/text_rows.h"
-#include "engine/construct/scratch/external_memory.h"
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "storage/file/external_memory.h"
 
 namespace ptin {
 namespace {

@@ -9,11 +9,11 @@
 #include "engine/construct/grid/point_sorter.h"
 #include "engine/construct/points/packed_bucket.h"
 #include "engine/construct/points/point_shares.h"
-#include "engine/construct/scratch/external_memory.h"
-#include "engine/construct/scratch/external_sorter.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "storage/file/checksum.h"
+#include "storage/file/external_memory.h"
+#include "storage/file/external_sorter.h"
 
 namespace ptin {
 

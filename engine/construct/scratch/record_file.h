@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "engine/construct/scratch/array_file.h"
-#include "engine/construct/scratch/external_memory.h"
 #include "engine/construct/scratch/plain_value.h"
 #include "engine/error.h"
 #include "engine/stop.h"
 #include "storage/file/checksum.h"
+#include "storage/file/external_memory.h"
 #include "storage/file/file_layer.h"
 
 namespace ptin {

@@ -18,10 +18,10 @@
 #include "engine/construct/grid/source_point.h"
 #include "engine/construct/read/point_stream.h"
 #include "engine/construct/read/tin_file.h"
-#include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"
 #include "engine/construct/tin/tin_on_grid.h"
 #include "engine/stop.h"
+#include "storage/file/external_sorter.h"
 
 namespace ptin {
 

@@ -19,10 +19,10 @@
 #include "engine/construct/grid/source_options.h"
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
-#include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"
 #include "engine/construct/tin/tin_faults.h"
 #include "engine/geometry/point.h"
+#include "storage/file/external_sorter.h"
 
 namespace ptin {
 

@@ -17,11 +17,11 @@
 #include "engine/construct/grid/source_warning.h"
 #include "engine/construct/grid/terrain_frame.h"
 #include "engine/construct/scratch/array_file.h"
-#include "engine/construct/scratch/external_sorter.h"
 #include "engine/construct/scratch/record_file.h"
 #include "engine/construct/tin/tin_on_grid.h"
 #include "engine/geometry/convex_hull.h"
 #include "engine/mesh/tin.h"
+#include "storage/file/external_sorter.h"
 
 namespace ptin {
 

@@ -7,8 +7,6 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -79,21 +77,6 @@ class TileQueue {
   int in_work_ = 0;
   std::exception_ptr failed_;
 };
-
-/// Calls work(0) to work(count - 1), each on a thread of its own, the first on the caller's. Where
-/// the system gives no more threads, those that there are do all of the work.
-template <class Work>
-void run_on_threads(int count, const Work& work) {
-  std::vector<std::jthread> threads;  // joined where the function ends
-  for (int i = 1; i < count; ++i) {
-    try {
-      threads.emplace_back([&work, i] { work(i); });
-    } catch (const std::system_error&) {
-      break;
-    }
-  }
-  work(0);
-}
 
 }  // namespace
 

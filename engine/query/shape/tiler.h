@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "engine/geometry/box.h"
@@ -31,6 +33,21 @@ template <class Piece, class Work>
 void work_in_parts(const Piece& piece, const Work& work) {
   if (work(piece)) return;
   for (const Piece& part : divided(piece)) work_in_parts(part, work);
+}
+
+/// Calls work(0) to work(count - 1), each on a thread of its own, the first on the caller's. Where
+/// the system gives no more threads, those that there are do all of the work.
+template <class Work>
+void run_on_threads(int count, const Work& work) {
+  std::vector<std::jthread> threads;  // joined where the function ends
+  for (int i = 1; i < count; ++i) {
+    try {
+      threads.emplace_back([&work, i] { work(i); });
+    } catch (const std::system_error&) {
+      break;
+    }
+  }
+  work(0);
 }
 
 /// What the tiles of a terrain may take.

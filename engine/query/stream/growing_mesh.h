@@ -34,6 +34,10 @@ class GrowingMesh {
   }
   [[nodiscard]] const Tin& tin() const noexcept { return tin_; }
   [[nodiscard]] VertexId find(VertexKey key) const noexcept { return ids_.find(key); }
+  /// Id of the vertex that the next split makes.
+  [[nodiscard]] VertexId next() const noexcept {
+    return static_cast<VertexId>(tin_.vertices.size());
+  }
 
   /// Bytes of a mesh of so many vertices.
   [[nodiscard]] static std::uint64_t bytes_of(std::uint64_t vertices) noexcept {
@@ -42,20 +46,26 @@ class GrowingMesh {
     return vertices * (kVertexBytes + 2 * kTriangleBytes) + KeyTable::bytes_for(vertices);
   }
 
-  SplitResult apply(const PendingSplit& s, const QueryContext& context) {
-    const auto u = static_cast<VertexId>(tin_.vertices.size());
-    const VertexId w = find(s.w);
-    const VertexId vl = find(s.vl);
-    const VertexId vr = find(s.vr);
+  /// Where a split takes place.
+  /// @throws Error corruption  it names a vertex that is not there
+  [[nodiscard]] SplitSite site(const PendingSplit& s, const QueryContext& context) const {
+    const VertexId w = ids_.find(s.w);
+    const VertexId vl = ids_.find(s.vl);
+    const VertexId vr = ids_.find(s.vr);
     if (w == KeyTable::kAbsent || vl == KeyTable::kAbsent || vr == KeyTable::kAbsent) {
       throw_refused(s, "it names a vertex that no record before it makes", context);
     }
-    if (!ids_.insert(s.u, u)) {
+    return site_of(next(), w, vl, vr, s.flags);
+  }
+  /// @param site  site(s, context).
+  /// @throws Error corruption  the split does not fit
+  SplitResult apply(const PendingSplit& s, const SplitSite& site, const QueryContext& context) {
+    if (!ids_.insert(s.u, site.u)) {
       throw_refused(s, "its vertex is in the mesh already", context);
     }
     tin_.vertices.push_back({point_of(s.u), s.height, kNone});
     tin_.has_height.push_back((s.flags & VertexSplit::kVertexVoid) == 0 ? 1 : 0);
-    const SplitResult made = split(tin_, site_of(u, w, vl, vr, s.flags));
+    const SplitResult made = split(tin_, site);
     if (!made.applied) {
       throw_refused(s, "it does not fit the mesh", context);
     }

@@ -14,9 +14,6 @@ namespace ptin {
 
 namespace {
 
-template <class Coder>
-constexpr bool kEncodes = std::is_same_v<Coder, RangeEncoder>;
-
 // Rounded down and up. REQUIRES: b > 0.
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept {
   return a / b - (a % b < 0 ? 1 : 0);
@@ -41,24 +38,6 @@ std::int64_t SplitCode::number_of(HeightBits bits) const noexcept {
 HeightBits SplitCode::bits_of(std::int64_t number) const noexcept {
   const auto n = static_cast<std::int32_t>(number);
   return std::bit_cast<HeightBits>(type_ == HeightType::int32 || n >= 0 ? n : n ^ INT32_MAX);
-}
-
-void SplitCode::begin_block(const Tin& tin) {
-  last_w_ = 0;
-  // Vertices keep their ids, and new ones come behind: those on the curve need not be sorted again.
-  const auto before = static_cast<std::ptrdiff_t>(curve_.size());
-  for (auto v = static_cast<VertexId>(before); v < tin.vertices.size(); ++v) {
-    const GridPoint p = tin.position(v);
-    curve_.push_back(
-        {hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), v});
-  }
-  // No two vertices share a place, so the order needs no tie rule on which both sides would agree.
-  std::sort(curve_.begin() + before, curve_.end());
-  std::inplace_merge(curve_.begin(), curve_.begin() + before, curve_.end());
-  rank_.resize(curve_.size());
-  for (std::uint32_t i = 0; i < curve_.size(); ++i) {
-    rank_[curve_[i].vertex] = i;
-  }
 }
 
 void SplitCode::read_star(const Tin& tin, VertexId w) {
@@ -87,10 +66,9 @@ TriangleId SplitCode::fan_triangle(std::size_t k) const noexcept {
   return star_.triangles[(start_ + fan_first_ + k) % star_.link.size()];
 }
 
-template <class Coder>
-const char* SplitCode::code(Coder& coder, const Tin& tin, LocalSplit& s) {
-  const char* fault = code_w(coder, tin, s);
-  fault = fault != nullptr ? fault : code_fan(coder, tin, s);
+template <class Symbols>
+const char* SplitCode::code(Symbols& symbols, const Tin& tin, LocalSplit& s) {
+  const char* fault = code_fan(symbols, tin, s);
   if (fault != nullptr) {
     return fault;
   }
@@ -99,41 +77,26 @@ const char* SplitCode::code(Coder& coder, const Tin& tin, LocalSplit& s) {
   for (std::size_t k = 0; k < fan_corners(); ++k) {
     outline_.push_back(tin.position(corner(k)));
   }
-  fault = side_ == Side::kInner ? code_inner_position(coder, tin, s)
-                                : code_border_position(coder, tin, s);
-  fault = fault != nullptr ? fault : code_height(coder, tin, s);
+  fault = side_ == Side::kInner ? code_inner_position(symbols, tin, s)
+                                : code_border_position(symbols, tin, s);
+  fault = fault != nullptr ? fault : code_height(symbols, tin, s);
   if (fault == nullptr) {
-    code_classes(coder, tin, s);
+    code_classes(symbols, tin, s);
   }
   return fault;
 }
 
-template <class Coder>
-const char* SplitCode::code_w(Coder& coder, const Tin& tin, LocalSplit& s) {
-  s.begins_level = coder.code(level_, s.begins_level);
-  last_w_ = s.begins_level ? 0 : last_w_;
-  // Within a level ranks of w rise, so gaps are small. A decoded gap is below 2^40, and the sum
-  // does not wrap, whatever a damaged code says.
-  const std::uint64_t w = last_w_ + gap_.code(coder, rank_of(s.w) - last_w_);
-  if (w >= tin.vertices.size()) {
-    return "names a w that is not there";
-  }
-  last_w_ = w;
-  s.w = vertex_at(w);
-  return nullptr;
-}
-
 /// Codes the fan, the triangles around w that get u: the place of corner vl, and how many triangles
 /// follow.
-template <class Coder>
-const char* SplitCode::code_fan(Coder& coder, const Tin& tin, LocalSplit& s) {
+template <class Symbols>
+const char* SplitCode::code_fan(Symbols& symbols, const Tin& tin, LocalSplit& s) {
   read_star(tin, s.w);
   const auto corners = static_cast<std::uint32_t>(star_.link.size());
   side_ = (s.flags & VertexSplit::kNoLeft) != 0
               ? Side::kNoLeft
               : ((s.flags & VertexSplit::kNoRight) != 0 ? Side::kNoRight : Side::kInner);
   // A decoder does not know the flags yet: what follows decides its side_ from the code.
-  if constexpr (kEncodes<Coder>) {
+  if constexpr (Symbols::kAreKnown) {
     fan_first_ = place(s.vl);
     const std::size_t last = place(s.vr);
     fan_size_ = star_.closed && last < fan_first_ ? last + corners - fan_first_ : last - fan_first_;
@@ -147,24 +110,24 @@ const char* SplitCode::code_fan(Coder& coder, const Tin& tin, LocalSplit& s) {
   }
   if (star_.closed) {
     side_ = Side::kInner;
-  } else if (coder.code(at_border_, side_ != Side::kInner)) {
-    side_ = coder.code(no_left_, side_ == Side::kNoLeft) ? Side::kNoLeft : Side::kNoRight;
+  } else if (symbols.bit(kAtBorder, side_ != Side::kInner)) {
+    side_ = symbols.bit(kNoLeftTriangle, side_ == Side::kNoLeft) ? Side::kNoLeft : Side::kNoRight;
   } else {
     side_ = Side::kInner;
   }
   if (side_ != Side::kInner) {
     // The fan begins or ends at the border edge that u divides, so its size says where it is.
     fan_size_ =
-        1 + border_size_.code(coder, corners - 2, static_cast<std::uint32_t>(fan_size_) - 1);
+        1 + symbols.range(kBorderSize, corners - 2, static_cast<std::uint32_t>(fan_size_) - 1);
     fan_first_ = side_ == Side::kNoLeft ? 0 : corners - 1 - fan_size_;
   } else {
     // Only places behind which a triangle follows are offered, and only sizes that the link has: no
     // bits are lost on others, and a decoder cannot leave the star.
     const std::uint32_t most_first = star_.closed ? corners - 1 : corners - 2;
-    fan_first_ = first_.code(coder, most_first, static_cast<std::uint32_t>(fan_first_));
+    fan_first_ = symbols.range(kFanFirst, most_first, static_cast<std::uint32_t>(fan_first_));
     const std::size_t most = star_.closed ? corners - 1 : corners - 1 - fan_first_;
-    fan_size_ = 1 + inner_size_.code(coder, static_cast<std::uint32_t>(most) - 1,
-                                     static_cast<std::uint32_t>(fan_size_) - 1);
+    fan_size_ = 1 + symbols.range(kInnerSize, static_cast<std::uint32_t>(most) - 1,
+                                  static_cast<std::uint32_t>(fan_size_) - 1);
   }
   s.vl = corner(0);
   s.vr = corner(fan_size_);
@@ -198,8 +161,8 @@ bool SplitCode::column(std::int64_t x, std::int64_t& low, std::int64_t& high) co
   return low <= high;
 }
 
-template <class Coder>
-const char* SplitCode::code_inner_position(Coder& coder, const Tin& /*tin*/, LocalSplit& s) {
+template <class Symbols>
+const char* SplitCode::code_inner_position(Symbols& symbols, const Tin& /*tin*/, LocalSplit& s) {
   std::int32_t min_x = outline_[0].x;
   std::int32_t max_x = outline_[0].x;
   for (const GridPoint p : outline_) {
@@ -210,30 +173,30 @@ const char* SplitCode::code_inner_position(Coder& coder, const Tin& /*tin*/, Loc
   if (max_x - min_x < 2) {
     return "has no place for its vertex";
   }
-  if (kEncodes<Coder> && (s.u.x <= min_x || s.u.x >= max_x)) {
+  if (Symbols::kAreKnown && (s.u.x <= min_x || s.u.x >= max_x)) {
     return "has its vertex outside of its star";
   }
   // A decoder does not know u: the offset means nothing then, and its coder does not look at it.
   const auto x_offset = static_cast<std::uint32_t>(s.u.x - min_x - 1);
   const auto most_x = static_cast<std::uint32_t>(max_x - min_x - 2);
-  s.u.x = min_x + 1 + static_cast<std::int32_t>(x_.code(coder, most_x, x_offset));
+  s.u.x = min_x + 1 + static_cast<std::int32_t>(symbols.range(kX, most_x, x_offset));
   std::int64_t low = 0;
   std::int64_t high = 0;
   if (!column(s.u.x, low, high)) {
     return "has no place for its vertex";
   }
-  if (kEncodes<Coder> && (s.u.y < low || s.u.y > high)) {
+  if (Symbols::kAreKnown && (s.u.y < low || s.u.y > high)) {
     return "has its vertex outside of its star";
   }
   const auto most_y = static_cast<std::uint32_t>(high - low);
   const auto y_offset = static_cast<std::uint32_t>(s.u.y - low);
-  s.u.y = static_cast<std::int32_t>(low + y_.code(coder, most_y, y_offset));
+  s.u.y = static_cast<std::int32_t>(low + symbols.range(kY, most_y, y_offset));
   return nullptr;
 }
 
 /// On the border u is one of the grid points between w and the end of the fan.
-template <class Coder>
-const char* SplitCode::code_border_position(Coder& coder, const Tin& tin, LocalSplit& s) {
+template <class Symbols>
+const char* SplitCode::code_border_position(Symbols& symbols, const Tin& tin, LocalSplit& s) {
   const GridPoint w = tin.position(s.w);
   const GridPoint end = tin.position(side_ == Side::kNoLeft ? s.vl : s.vr);
   const std::int32_t dx = end.x - w.x;
@@ -243,7 +206,7 @@ const char* SplitCode::code_border_position(Coder& coder, const Tin& tin, LocalS
     return "has no place for its vertex";
   }
   std::int32_t step = 1;
-  if constexpr (kEncodes<Coder>) {
+  if constexpr (Symbols::kAreKnown) {
     // The division may round for a u beside the edge; comparing places finds that out.
     step = dx != 0 ? (s.u.x - w.x) / (dx / steps) : (s.u.y - w.y) / (dy / steps);
     const GridPoint there{w.x + step * (dx / steps), w.y + step * (dy / steps)};
@@ -251,8 +214,8 @@ const char* SplitCode::code_border_position(Coder& coder, const Tin& tin, LocalS
       return "has its vertex outside of its edge";
     }
   }
-  step = 1 + static_cast<std::int32_t>(along_.code(coder, static_cast<std::uint32_t>(steps - 2),
-                                                   static_cast<std::uint32_t>(step - 1)));
+  step = 1 + static_cast<std::int32_t>(symbols.range(kAlong, static_cast<std::uint32_t>(steps - 2),
+                                                     static_cast<std::uint32_t>(step - 1)));
   s.u = {w.x + step * (dx / steps), w.y + step * (dy / steps)};
   return nullptr;
 }
@@ -272,8 +235,9 @@ std::size_t SplitCode::fan_triangle_of(const Tin& tin, GridPoint u) const noexce
 
 /// The number expected for the height of u: that of the plane of fan triangle k at u, rounded to
 /// nearest, halves up. Where not all corners have heights, that of the first corner that has one;
-/// where none has, the last height coded.
-std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size_t k) const {
+/// where none has, none is expected.
+std::optional<std::int64_t> SplitCode::predicted(const Tin& tin, const LocalSplit& s,
+                                                 std::size_t k) const {
   const VertexId v[3] = {s.w, corner(k), corner(k + 1)};
   __extension__ using Wide = __int128;  // weights below 2^61, heights below 2^32
   Wide sum = 0;
@@ -300,7 +264,7 @@ std::int64_t SplitCode::predicted(const Tin& tin, const LocalSplit& s, std::size
       return number_of(tin.vertices[c].height);
     }
   }
-  return last_height_;
+  return std::nullopt;
 }
 
 /// Length in bits of the range of the heights of w and the fan, which shows about how far off a
@@ -324,8 +288,8 @@ std::size_t SplitCode::roughness(const Tin& tin) const {
              : static_cast<std::size_t>(std::bit_width(static_cast<std::uint64_t>(high - low)));
 }
 
-template <class Coder>
-const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) {
+template <class Symbols>
+const char* SplitCode::code_height(Symbols& symbols, const Tin& tin, LocalSplit& s) {
   const std::size_t k = fan_triangle_of(tin, s.u);
   bool all_void = true;
   for (std::size_t i = 0; i < fan_size_; ++i) {
@@ -334,7 +298,7 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
   // A vertex without a height stands in void triangles only, so elsewhere no bit is spent on it.
   bool has_none = (s.flags & VertexSplit::kVertexVoid) != 0;
   if (!all_void) {
-    if (kEncodes<Coder> && has_none) {
+    if (Symbols::kAreKnown && has_none) {
       return "has no height and splits a surface";
     }
     has_none = false;
@@ -342,7 +306,7 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
     const std::size_t without = (tin.has_height[s.w] == 0 ? 1U : 0U) +
                                 (tin.has_height[corner(k)] == 0 ? 1U : 0U) +
                                 (tin.has_height[corner(k + 1)] == 0 ? 1U : 0U);
-    has_none = coder.code(is_void_[without], has_none);
+    has_none = symbols.bit(kNoHeight + without, has_none);
   }
   s.flags = static_cast<std::uint16_t>(has_none ? s.flags | VertexSplit::kVertexVoid
                                                 : s.flags & ~VertexSplit::kVertexVoid);
@@ -350,14 +314,8 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
     s.height = 0;
     return nullptr;
   }
-  const std::int64_t expected = predicted(tin, s, k);
-  const std::int64_t off = number_of(s.height) - expected;
-  // Small residuals of either sign become small numbers: 0, -1, 1, -2 are 0, 1, 2, 3.
-  const auto folded =
-      (static_cast<std::uint64_t>(off) << 1) ^ static_cast<std::uint64_t>(off >> 63);
-  const std::uint64_t coded = residual_[roughness(tin)].code(coder, folded);
   const std::int64_t number =
-      expected + (static_cast<std::int64_t>(coded >> 1) ^ -static_cast<std::int64_t>(coded & 1U));
+      symbols.height(roughness(tin), predicted(tin, s, k), number_of(s.height));
   // A residual needs 33 bits, and a damaged code can have 40.
   if (number < INT32_MIN || number > INT32_MAX) {
     return "has a height beyond all numbers";
@@ -367,23 +325,22 @@ const char* SplitCode::code_height(Coder& coder, const Tin& tin, LocalSplit& s) 
   if (type_ == HeightType::float32 && (s.height & 0x7FFFFFFFU) > 0x7F800000U) {
     return "has a height that is no number";
   }
-  last_height_ = number;
   return nullptr;
 }
 
 /// Codes the classes of the new triangles. Only a triangle whose corners all have heights can be
 /// surface.
-template <class Coder>
-void SplitCode::code_classes(Coder& coder, const Tin& tin, LocalSplit& s) {
+template <class Symbols>
+void SplitCode::code_classes(Symbols& symbols, const Tin& tin, LocalSplit& s) {
   const bool has_height = (s.flags & VertexSplit::kVertexVoid) == 0;
   // `beside` is the triangle of the fan beside the new one, `outer` the one across the new one's
   // other side.
-  const auto code_one = [&](std::array<BitModel, 4>& models, TriangleId beside, TriangleId outer,
-                            VertexId end, std::uint16_t flag) {
+  const auto code_one = [&](std::size_t line, TriangleId beside, TriangleId outer, VertexId end,
+                            std::uint16_t flag) {
     bool is = (s.flags & flag) != 0;
     if (has_height && tin.has_height[s.w] != 0 && tin.has_height[end] != 0) {
       const bool outer_void = outer != kNone && is_void(tin, outer);
-      is = coder.code(models[(is_void(tin, beside) ? 1U : 0U) + (outer_void ? 2U : 0U)], is);
+      is = symbols.bit(line + (is_void(tin, beside) ? 1U : 0U) + (outer_void ? 2U : 0U), is);
     } else {
       is = true;
     }
@@ -400,15 +357,15 @@ void SplitCode::code_classes(Coder& coder, const Tin& tin, LocalSplit& s) {
   s.flags = static_cast<std::uint16_t>(s.flags & ~kClasses);
   if (side_ != Side::kNoLeft) {
     s.flags |= given & VertexSplit::kLeftVoid;
-    code_one(left_void_, first, across(first, previous_corner), s.vl, VertexSplit::kLeftVoid);
+    code_one(kLeftIsVoid, first, across(first, previous_corner), s.vl, VertexSplit::kLeftVoid);
   }
   if (side_ != Side::kNoRight) {
     s.flags |= given & VertexSplit::kRightVoid;
-    code_one(right_void_, last, across(last, next_corner), s.vr, VertexSplit::kRightVoid);
+    code_one(kRightIsVoid, last, across(last, next_corner), s.vr, VertexSplit::kRightVoid);
   }
 }
 
-template const char* SplitCode::code(RangeEncoder&, const Tin&, LocalSplit&);
-template const char* SplitCode::code(RangeDecoder&, const Tin&, LocalSplit&);
+template const char* SplitCode::code(RecordedSymbols&, const Tin&, LocalSplit&);
+template const char* SplitCode::code(DecodedSymbols&, const Tin&, LocalSplit&);
 
 }  // namespace ptin

@@ -11,6 +11,7 @@
 #include "engine/mesh/split.h"
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/coarsest.h"
+#include "engine/query/stream/split_decoder.h"
 #include "engine/stop.h"
 #include "storage/coarsest_tin.h"
 #include "storage/facts.h"
@@ -57,11 +58,17 @@ bool is_bound(double v) { return v >= 0; }
 /// curve: arrays that grow hold up to twice what is in them.
 std::uint64_t growing_bytes(std::uint64_t vertices) {
   constexpr std::uint64_t kMesh = sizeof(Vertex) + 1 + 2 * (sizeof(Triangle) + 1);
-  constexpr std::uint64_t kAlongCurve = 16 + sizeof(std::uint32_t);
+  constexpr std::uint64_t kAlongCurve = 16;
   return vertices * 2 * (kMesh + kAlongCurve);
 }
 
 }  // namespace
+
+StreamReader::StreamReader(std::string name, StreamReaderOptions options)
+    : name_(std::move(name)), options_(std::move(options)) {}
+StreamReader::StreamReader(StreamReader&&) noexcept = default;
+StreamReader& StreamReader::operator=(StreamReader&&) noexcept = default;
+StreamReader::~StreamReader() = default;
 
 std::string StreamReader::place() const {
   return name_ + ", frame " + std::to_string(sequence_) + " at byte " + std::to_string(offset_);
@@ -260,7 +267,7 @@ void StreamReader::take_start(std::span<const std::byte> payload) {
   certificate_ = now;
   splits_ = 0;
   splits_in_all_ = start.splits;
-  code_.emplace(facts.heights.type);
+  code_ = std::make_unique<SplitDecoder>(facts.heights.type);
   expects_ = is_delta ? Expects::kSplits : Expects::kT0;
 }
 

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,11 +13,13 @@
 #include "engine/mesh/tin.h"
 #include "engine/query/select/certificate.h"
 #include "engine/query/select/query_limits.h"
-#include "engine/query/stream/split_code.h"
 #include "engine/query/stream/stream_format.h"
 #include "storage/store_facts.h"
 
 namespace ptin {
+
+class SplitDecoder;
+struct LocalSplit;
 
 struct StreamReaderOptions {
   /// The memory is for a frame that is not whole yet and for the mesh; the limit is checked before
@@ -30,8 +31,10 @@ struct StreamReaderOptions {
 class StreamReader {
  public:
   /// @param name  Name of the stream, in errors.
-  explicit StreamReader(std::string name, StreamReaderOptions options = {})
-      : name_(std::move(name)), options_(std::move(options)) {}
+  explicit StreamReader(std::string name, StreamReaderOptions options = {});
+  StreamReader(StreamReader&&) noexcept;
+  StreamReader& operator=(StreamReader&&) noexcept;
+  ~StreamReader();
 
   /// Takes the next bytes, however they were cut, and applies every frame that is whole by now.
   /// @return Number of bytes taken: all, unless the stream ends before. Bytes behind the end of a
@@ -122,7 +125,7 @@ class StreamReader {
   std::uint64_t digest_ = 0;  ///< Digest of the mesh.
   Certificate certificate_;
   Tin tin_;
-  std::optional<SplitCode> code_;
+  std::unique_ptr<SplitDecoder> code_;
 };
 
 }  // namespace ptin

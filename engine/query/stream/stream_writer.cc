@@ -3,101 +3,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/geometry/hilbert.h"
-#include "engine/geometry/key_table.h"
-#include "engine/mesh/split.h"
-#include "engine/query/refine/refinement.h"
-#include "engine/query/refine/split_site.h"
-#include "engine/query/select/total_order.h"
-#include "engine/query/stream/growing_mesh.h"
-#include "engine/query/stream/split_code.h"
+#include "engine/query/stream/frame_coder.h"
 #include "engine/query/stream/stream_format.h"
+#include "engine/query/stream/stream_frames.h"
 
 namespace ptin {
 
 namespace {
 
-constexpr std::uint64_t kLeastSplits = 256;
-constexpr std::uint64_t kMostSplits = std::uint64_t{1} << 20;
-constexpr std::uint64_t kShare = 8;
-static_assert(kShare <= stream::kLeastShare && kMostSplits >= stream::kMostLeastSplits);
 constexpr std::size_t kMostMetadata = std::size_t{1} << 20;
-
-/// The level of each split of a frame: the length of the longest chain of splits of the frame that
-/// it depends on. Level 0 depends on none of them. The splits of one level can come in any order.
-class Levels {
- public:
-  Levels(const Tin& base, std::uint64_t splits) : mesh_(base, splits) {}
-
-  /// @param frame  In order of falling rank.
-  std::vector<std::uint32_t> of(std::span<const PendingSplit> frame, const QueryContext& context) {
-    std::vector<std::uint32_t> levels;
-    levels.reserve(frame.size());
-    marks_.assign(mesh_.tin().triangles.size(), 0);
-    for (const PendingSplit& s : frame) {
-      const SplitResult made = mesh_.apply(s, context);
-      marks_.resize(mesh_.tin().triangles.size(), 0);
-      walk_star(mesh_.tin(), find_u(), star_);
-      std::uint32_t level = 0;
-      for (const TriangleId t : star_.triangles) {
-        level = t == made.left || t == made.right ? level : std::max(level, marks_[t]);
-      }
-      for (const TriangleId t : star_.triangles) {
-        marks_[t] = level + 1;
-      }
-      levels.push_back(level);
-    }
-    return levels;
-  }
-
- private:
-  [[nodiscard]] VertexId find_u() const noexcept {
-    return static_cast<VertexId>(mesh_.tin().vertices.size() - 1);
-  }
-  GrowingMesh mesh_;
-  std::vector<std::uint32_t>
-      marks_;  ///< For each triangle 1 + level of the split of this frame that made it.
-  Star star_;
-};
-
-/// Most bytes that a stream takes beside T0: two meshes of all vertices, the splits, and for each
-/// vertex 42 of its place on the curve (SplitCode), 16 of marks, and 36 of a frame that holds a ninth
-/// of them, in two orders. What grows is counted twice.
-std::uint64_t bytes_of_sending(std::uint64_t held, std::uint64_t splits) noexcept {
-  constexpr std::uint64_t kBesideMesh = 96;
-  return 2 * GrowingMesh::bytes_of(held + splits) + kBesideMesh * (held + splits) +
-         splits * sizeof(PendingSplit);
-}
-
-/// The most splits that can be sent in so much memory.
-std::uint64_t splits_within(std::uint64_t held, std::uint64_t memory_bytes) noexcept {
-  std::uint64_t fit = 0, too_many = std::uint64_t{1} << 32;
-  while (too_many - fit > 1) {
-    const std::uint64_t middle = fit + (too_many - fit) / 2;
-    (bytes_of_sending(held, middle) <= memory_bytes ? fit : too_many) = middle;
-  }
-  return fit;
-}
-
-/// Keeps the first splits of the total order.
-void keep_first(std::vector<PendingSplit>& splits, std::uint64_t most) {
-  if (most >= splits.size()) return;
-  const auto last = splits.begin() + static_cast<std::ptrdiff_t>(most);
-  std::nth_element(splits.begin(), last, splits.end(), is_before);
-  splits.erase(last, splits.end());
-}
-
-/// A split of a level, and the number of its w.
-struct Ordered {
-  std::uint32_t rank;
-  VertexId w;
-  const PendingSplit* split;
-};
 
 class Writer {
  public:
@@ -106,38 +24,28 @@ class Writer {
         store_(terrain.store()),
         request_(request),
         sink_(sink),
-        source_(terrain.record_source()),
-        context_(request.limits, store_.path()),
-        code_(store_.facts().heights.type) {}
+        context_(request.limits, store_.path()) {}
 
   StreamSummary run() {
     const auto start = std::chrono::steady_clock::now();
-    admit_what_is_told();
-    Tin base = base_mesh();
-    std::vector<PendingSplit> splits = missing_splits(base);
-    store_.pages().check_unchanged();
-    summary_.base_vertices = base.vertices.size();
+    frames_ = fits_as_a_whole() ? whole_stream(terrain_, request_, context_)
+                                : stream_in_parts(terrain_, request_, context_);
+    summary_.base_vertices = frames_->base_vertices();
     send_head();
-    send_start(base, splits);
+    send_start();
     if (request_.held.empty()) {
-      send_t0(base);
+      send_t0(stream::numbered_by_key(terrain_.t0()));
     }
-    summary_.certificate = certificate_from(splits, 0);
-    GrowingMesh mesh(base, splits.size());
-    Levels levels(base, splits.size());
-    base = {};
-    for (std::size_t at = 0; at < splits.size();) {
+    summary_.certificate = certificate_before(0);
+    FrameCoder coder(frames_->begin(), store_.path());
+    const FrameCuts& cuts = frames_->cuts();
+    for (std::size_t frame = 0; frame < cuts.frames(); ++frame) {
       context_.check_stop();
-      const std::uint64_t share = mesh.tin().vertices.size() / kShare;
-      const std::size_t count =
-          std::min<std::uint64_t>(splits.size() - at, std::clamp(share, kLeastSplits, kMostSplits));
-      const Certificate left = certificate_from(splits, at + count);
-      if (!send_splits(std::span(splits).subspan(at, count), left, mesh, levels)) break;
-      summary_.certificate = left;
-      at += count;
-      summary_.splits = at;
+      if (!send_splits(frame, coder)) break;
+      summary_.certificate = certificate_before(frame + 1);
+      summary_.splits = cuts.begin(frame + 1);
     }
-    if (!summary_.is_cut) send_end(mesh.tin());
+    if (!summary_.is_cut) send_end();
     context_.cost.records_applied = summary_.splits;
     summary_.cost = context_.cost;
     summary_.cost.seconds = seconds_since(start);
@@ -145,42 +53,34 @@ class Writer {
   }
 
  private:
-  void admit_what_is_told() const;
-  [[nodiscard]] Tin base_mesh();
-  [[nodiscard]] std::vector<PendingSplit> missing_splits(const Tin& base);
-  [[nodiscard]] Certificate certificate_from(std::span<const PendingSplit> splits,
-                                             std::size_t next) const;
-  [[nodiscard]] std::vector<PendingSplit> all_of_pages(const AttributePredicate& predicate,
-                                                       std::span<const PageId> pages,
-                                                       const LeftOut& held);
-  [[nodiscard]] std::vector<PageId> pages_of(const AttributePredicate& predicate);
-  [[nodiscard]] std::vector<PendingSplit> first_of(const AttributePredicate& predicate,
-                                                   std::uint64_t most, const LeftOut& held,
-                                                   std::uint64_t fixed_bytes);
+  [[nodiscard]] bool fits_as_a_whole();
+  [[nodiscard]] std::uint64_t most_records_of(const PredicatePtr& predicate);
+  /// The certificate of the mesh once all splits before a frame are applied.
+  [[nodiscard]] Certificate certificate_before(std::size_t frame) const {
+    return certify_below(
+        store_, std::max(frames_->cuts().error_before(frame), request_.tolerance.value_or(-1.0)));
+  }
   void send(std::span<const std::byte> bytes) {
     sink_(bytes);
     summary_.bytes += bytes.size();
   }
   void send_frame(stream::FrameKind kind, std::span<const std::byte> payload);
   void send_head();
-  void send_start(const Tin& base, std::span<const PendingSplit> splits);
+  void send_start();
   void send_t0(const Tin& base);
   /// @return False where the frame would go beyond the bytes of the request: it is not sent.
-  bool send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
-                   Levels& levels);
-  void code_level(std::span<const PendingSplit> splits, RangeEncoder& coder, GrowingMesh& mesh);
-  void send_end(const Tin& tin);
+  bool send_splits(std::size_t frame, FrameCoder& coder);
+  void send_end();
 
   const OpenedTerrain& terrain_;
   const StoreFile& store_;
   const StreamRequest& request_;
   const ByteSink& sink_;
-  RecordSource source_;
   QueryContext context_;
-  SplitCode code_;
+  std::unique_ptr<StreamFrames> frames_;
+  std::vector<std::byte> coded_;
   StreamSummary summary_;
   std::uint32_t sequence_ = 0;
-  double left_out_ = -1.0;  ///< Largest error of a record that is wanted and beyond `most_splits`.
 };
 
 void append_bytes(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
@@ -194,125 +94,29 @@ void append(std::vector<std::byte>& out, const T& object) {
   append_bytes(out, std::as_bytes(std::span(&object, 1)));
 }
 
-/// Sorts splits by falling rank, and within a rank along the Hilbert curve, where the mesh is in
-/// the caches.
-void sort_by_rank(std::span<PendingSplit> splits) {
-  struct LevelPlace {
-    std::uint64_t curve;
-    std::uint32_t index;
-    std::uint16_t rank;
-  };
-  std::vector<LevelPlace> places;
-  places.reserve(splits.size());
-  for (std::uint32_t i = 0; i < splits.size(); ++i) {
-    const GridPoint p = point_of(splits[i].u);
-    places.push_back(
-        {hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), i,
-         splits[i].rank});
-  }
-  std::sort(places.begin(), places.end(), [](const LevelPlace& a, const LevelPlace& b) {
-    return a.rank != b.rank ? a.rank > b.rank : a.curve < b.curve;
-  });
-  std::vector<PendingSplit> sorted;
-  sorted.reserve(splits.size());
-  for (const LevelPlace& p : places) {
-    sorted.push_back(splits[p.index]);
-  }
-  std::copy(sorted.begin(), sorted.end(), splits.begin());
-}
-
-/// Records that the servings brought are known before anything is read.
-void Writer::admit_what_is_told() const {
-  std::uint64_t held_records = 0;
-  for (const StreamHeld& held : request_.held) {
-    if (held.splits > store_.record_count()) return;
-    held_records += held.splits;
-  }
-  held_records = std::min(held_records, store_.record_count());
-  const std::uint64_t least =
-      std::min(request_.fewest_splits.value_or(1), store_.record_count() - held_records);
-  context_.admit(bytes_of_sending(terrain_.t0().vertices.size() + held_records, least));
-}
-
-/// The mesh that the receiver has, numbered as the receiver numbers it: T0, and the records of all
-/// servings. Each serving is closed under dependency together with those before it.
-Tin Writer::base_mesh() {
-  Refinement refinement(terrain_.t0());
-  for (const StreamHeld& held : request_.held) {
-    const PredicatePtr predicate = held.predicate ? held.predicate : everything();
-    const std::uint64_t vertices = refinement.tin().vertices.size();
-    // A serving counts the splits that it sent, without those that the receiver had by then.
-    const LeftOut before{[&](VertexKey u) { return refinement.find(u) != kNone; }, vertices};
-    const std::uint64_t fixed = refinement_bytes(vertices);
-    if (held.splits >= store_.record_count() - std::min(store_.record_count(), vertices)) {
-      const std::vector<PageId> pages = pages_of(*predicate);
-      context_.admit(fixed + refinement_bytes(most_records(store_, pages)));
-      std::vector<PendingSplit> splits = all_of_pages(*predicate, pages, before);
-      keep_first(splits, held.splits);
-      refinement.apply(splits, context_);
-    } else {
-      refinement.apply(first_of(*predicate, held.splits, before, fixed), context_);
-    }
-  }
-  return stream::numbered_by_key(refinement.tin());
-}
-
-std::vector<PageId> Writer::pages_of(const AttributePredicate& predicate) {
+std::uint64_t Writer::most_records_of(const PredicatePtr& predicate) {
   std::vector<PageId> pages;
-  source_.index.search(predicate, pages, context_.cost.io);
-  context_.check_stop();
-  return pages;
+  terrain_.index().search(predicate ? *predicate : *everything(), pages, context_.cost.io);
+  return most_records(store_, pages);
 }
 
-/// The records of these pages for which a predicate is true and that are not held.
-std::vector<PendingSplit> Writer::all_of_pages(const AttributePredicate& predicate,
-                                               std::span<const PageId> pages, const LeftOut& held) {
-  std::vector<PendingSplit> splits;
-  read_pages(store_, pages, predicate, context_, splits);
-  std::erase_if(splits, [&](const PendingSplit& s) { return held.is(s.u); });
-  return splits;
-}
-
-/// The first `most` records for which a predicate is true and that are not held. Notes the largest error
-/// that is left out.
-std::vector<PendingSplit> Writer::first_of(const AttributePredicate& predicate, std::uint64_t most,
-                                           const LeftOut& held, std::uint64_t fixed_bytes) {
-  FirstRecords first = first_records(source_, predicate, Growth{most}, fixed_bytes, context_, held);
-  left_out_ = first.largest_error_left;
-  return std::move(first.splits);
-}
-
-/// The records that are wanted and not held, in the total order. They are closed together with
-/// those that are held, and so is any first part of them.
-std::vector<PendingSplit> Writer::missing_splits(const Tin& base) {
-  const PredicatePtr wanted = request_.wanted ? request_.wanted : everything();
-  const std::uint64_t vertices = base.vertices.size(), all = store_.record_count();
-  KeyTable ids(vertices);
-  for (VertexId v = 0; v < vertices; ++v) ids.insert(key_of(base.position(v)), v);
-  const LeftOut held{[&](VertexKey u) { return ids.find(u) != KeyTable::kAbsent; }, vertices};
-  const std::uint64_t left = all - std::min(all, vertices - terrain_.t0().vertices.size());
-  const std::uint64_t fit = splits_within(vertices, request_.limits.memory_bytes);
-  const std::uint64_t most =
-      std::min(request_.most_splits, std::max(fit, request_.fewest_splits.value_or(all)));
-  left_out_ = -1.0;
-  std::vector<PendingSplit> splits;
-  if (most >= left) {
-    const std::vector<PageId> pages = pages_of(*wanted);
-    context_.admit(bytes_of_sending(vertices, std::min(most_records(store_, pages), left)));
-    splits = all_of_pages(*wanted, pages, held);
-  } else {
-    splits = first_of(*wanted, most, held, GrowingMesh::bytes_of(vertices));
-    context_.admit(bytes_of_sending(vertices, splits.size()));
+/// Whether all that is held and sent is certain to fit the memory; the index is asked where the number
+/// of all records does not decide it.
+bool Writer::fits_as_a_whole() {
+  if (request_.temporary_folder.empty()) return true;
+  const std::uint64_t limit = std::min(request_.limits.memory_bytes, request_.most_part_bytes);
+  const std::uint64_t t0 = terrain_.t0().vertices.size(), all = store_.record_count();
+  const auto fit = [&](std::uint64_t held, std::uint64_t splits) {
+    const std::uint64_t finding = held == 0 && splits < request_.most_splits ? 0 : held + splits;
+    return std::max(bytes_of_sending(t0 + held, splits), 2 * refinement_bytes(finding)) <= limit;
+  };
+  if (fit(request_.held.empty() ? 0 : all, all)) return true;
+  std::uint64_t held = 0;
+  for (const StreamHeld& serving : request_.held) {
+    held += std::min(serving.splits, most_records_of(serving.predicate));
   }
-  splits.shrink_to_fit();
-  std::sort(splits.begin(), splits.end(), is_before);
-  return splits;
-}
-
-/// The certificate of the mesh once all splits before `next` are applied.
-Certificate Writer::certificate_from(std::span<const PendingSplit> splits, std::size_t next) const {
-  const double left = next < splits.size() ? splits[next].error : left_out_;
-  return certify_below(store_, std::max(left, request_.tolerance.value_or(-1.0)));
+  const std::uint64_t splits = std::min(request_.most_splits, most_records_of(request_.wanted));
+  return fit(std::min(held, all), splits);
 }
 
 void Writer::send_frame(stream::FrameKind kind, std::span<const std::byte> payload) {
@@ -334,12 +138,12 @@ void Writer::send_head() {
   send(std::as_bytes(std::span(&head, 1)));
 }
 
-void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
+void Writer::send_start() {
   if (request_.metadata.size() > kMostMetadata) {
     refuse("the stream's metadata is longer than 1 MiB");
   }
   const StoreFacts& f = store_.facts();
-  const Certificate now = certificate_from(splits, 0);
+  const Certificate now = certificate_before(0);
   const auto bits = [](double v) { return layout::to_bits(v); };
   const stream::Start start{store_.fingerprint(),
                             static_cast<std::uint32_t>(f.heights.type),
@@ -357,9 +161,9 @@ void Writer::send_start(const Tin& base, std::span<const PendingSplit> splits) {
                             bits(f.base_deviation),
                             bits(now.error),
                             bits(now.deviation),
-                            base.vertices.size(),
-                            stream::digest_of(base),
-                            splits.size(),
+                            frames_->base_vertices(),
+                            frames_->base_digest(),
+                            frames_->cuts().splits(),
                             request_.metadata.size()};
   std::vector<std::byte> payload;
   append(payload, start);
@@ -386,27 +190,17 @@ void Writer::send_t0(const Tin& base) {
 
 /// Sends one frame. Within it splits come level by level, and in a level by the number of w: an
 /// order costs bits only where it says something.
-bool Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left, GrowingMesh& mesh,
-                         Levels& levels) {
-  sort_by_rank(splits);
-  const std::vector<std::uint32_t> level = levels.of(splits, context_);
-  std::vector<std::vector<PendingSplit>> by_level;
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    by_level.resize(std::max<std::size_t>(by_level.size(), level[i] + std::size_t{1}));
-    by_level[level[i]].push_back(splits[i]);
-  }
+bool Writer::send_splits(std::size_t frame, FrameCoder& coder) {
+  const std::uint64_t count = frames_->cuts().count(frame);
+  const Certificate left = certificate_before(frame + 1);
+  frames_->take(frame, coded_);
   std::vector<std::byte> payload;
-  append(payload, stream::Splits{static_cast<std::uint32_t>(splits.size()), 0,
-                                 layout::to_bits(left.error), layout::to_bits(left.deviation)});
+  append(payload, stream::Splits{static_cast<std::uint32_t>(count), 0, layout::to_bits(left.error),
+                                 layout::to_bits(left.deviation)});
   const std::size_t before = payload.size();
-  RangeEncoder coder(payload);
-  code_.begin_block(mesh.tin());
-  for (const std::vector<PendingSplit>& one : by_level) {
-    code_level(one, coder, mesh);
-  }
-  coder.finish();
-  const std::size_t least =
-      (splits.size() + stream::kMostSplitsPerByte - 1) / stream::kMostSplitsPerByte;
+  coder.code(coded_, count, payload);
+  frames_->count_vertices(frame, coder);
+  const std::size_t least = (count + stream::kMostSplitsPerByte - 1) / stream::kMostSplitsPerByte;
   payload.resize(std::max(payload.size(), before + least), std::byte{0});
   const std::uint64_t bytes = summary_.bytes;
   const std::uint64_t whole = bytes + sizeof(stream::FrameHead) + payload.size();
@@ -417,34 +211,9 @@ bool Writer::send_splits(std::span<PendingSplit> splits, const Certificate& left
   return true;
 }
 
-void Writer::code_level(std::span<const PendingSplit> splits, RangeEncoder& coder,
-                        GrowingMesh& mesh) {
-  std::vector<Ordered> order;
-  order.reserve(splits.size());
-  for (const PendingSplit& s : splits) {
-    const VertexId w = mesh.find(s.w);
-    if (w == KeyTable::kAbsent) {
-      throw_refused(s, "it names a vertex that no record before it makes", context_);
-    }
-    order.push_back({code_.rank_of(w), w, &s});
-  }
-  std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
-    return a.rank != b.rank ? a.rank < b.rank : a.split->u < b.split->u;
-  });
-  bool begins = true;
-  for (const auto& [rank, w, s] : order) {
-    const LocalSplit local{begins,         w,         mesh.find(s->vl), mesh.find(s->vr),
-                           point_of(s->u), s->height, s->flags};
-    begins = false;
-    if (const char* fault = code_.encode(coder, mesh.tin(), local); fault != nullptr) {
-      throw_refused(*s, std::string("it ") + fault, context_);
-    }
-    mesh.apply(*s, context_);
-  }
-}
-
-void Writer::send_end(const Tin& tin) {
-  const stream::End end{summary_.splits, tin.vertices.size(), stream::digest_of(tin)};
+void Writer::send_end() {
+  const stream::End end{summary_.splits, frames_->base_vertices() + summary_.splits,
+                        frames_->base_digest() + frames_->digest()};
   send_frame(stream::FrameKind::kEnd, std::as_bytes(std::span(&end, 1)));
 }
 

@@ -43,13 +43,21 @@ struct StreamRequest {
   /// Most splits to send; the most important ones are sent.
   std::uint64_t most_splits = std::numeric_limits<std::uint64_t>::max();
   /// Where `most_splits` take more than the memory, as many are sent as it holds, but these at least;
-  /// none: all of them.
+  /// none: all of them. Without a folder for temporary files alone.
   std::optional<std::uint64_t> fewest_splits;
   /// Most bytes: the stream is cut behind the last frame that ends within them, and has no end. T0
   /// and one frame of splits are sent whatever they take, so that every stream brings something.
   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
   /// Text for the receiver (JSON: CRS, units, what was asked); at most 1 MiB.
   std::string metadata;
+  /// Folder for what does not fit the memory, up to 55 bytes a split, in files without a name; empty: all
+  /// has to fit.
+  std::string temporary_folder;
+  /// Threads that work on what does not fit; the bytes are the same for any number.
+  int threads = 1;
+  /// A part of the terrain takes at most so many bytes where it can be cut, and all of it where it is
+  /// one part: for tests, and to find what is fastest.
+  std::uint64_t most_part_bytes = std::numeric_limits<std::uint64_t>::max();
   QueryLimits limits;
 };
 
@@ -75,9 +83,12 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 /// @throws Error invalid_argument, resource_exhausted (before anything is sent), corruption,
 /// io_error, cancelled; what `sink` throws
 /// Cost: O(|T0| + h + k log k) time for k splits sent and h held; memory for two meshes of h + k
-/// vertices, some 280 bytes a vertex held and 350 a split, known beforehand: where servings state
-/// their splits, from what the request says alone. With `most_splits`, and of servings that were cut, pages are read
-/// about as far down in errors as their splits are (first_records(), select/total_order.h).
+/// vertices, some 300 bytes a vertex, known beforehand: where servings state their splits, from what
+/// the request says alone. With `most_splits`, and of servings that were cut, pages are read about as
+/// far down in errors as their splits are (first_records(), select/total_order.h). Where that is more
+/// than the limit and there is a folder, the terrain is worked on in parts (stream_frames.h): each page
+/// is read once for the order of all records and then for every part that its records meet, and a
+/// frame of 2^20 splits is what has to fit, some 130 MB.
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);
 

@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "engine/construct/scratch/external_memory.h"
-#include "engine/construct/scratch/run_merger.h"
 #include "engine/error.h"
 #include "engine/stop.h"
+#include "storage/file/external_memory.h"
 #include "storage/file/file_layer.h"
+#include "storage/file/run_merger.h"
 
 namespace ptin {
 

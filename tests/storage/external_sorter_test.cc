@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "engine/construct/scratch/external_sorter.h"
+#include "storage/file/external_sorter.h"
 
 #include <algorithm>
 #include <cmath>
