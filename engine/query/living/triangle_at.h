@@ -40,6 +40,7 @@ struct TriangleAt {
 /// @param found  As many; receives the answers. One that is not found lies outside of the domain.
 /// @param held   Bytes that the caller holds, to which triangles are added that a number of vertices
 ///               has not decided yet (LivingTies).
+/// @param recent What the caller read of the raster's heights lately, which is not read again; null: nothing.
 /// @throws Error corruption, io_error, cancelled; resource_exhausted where these do not fit
 /// Cost: of the full TIN of a file with heights of a raster the tiles of the spots (FloorAtSpots). Else
 /// of one spot the nodes and pages whose stars may hold it, those of small boxes first, until
