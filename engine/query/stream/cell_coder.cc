@@ -14,7 +14,7 @@ namespace ptin {
 
 namespace {
 
-std::uint64_t position_of(GridPoint p) noexcept {
+std::uint64_t place_on_curve(GridPoint p) noexcept {
   return hilbert_position(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y));
 }
 
@@ -86,9 +86,9 @@ void CellCoder::place_along_curve(const Tin& base) {
   const std::size_t base_size = base.vertices.size();
   std::vector<Sorted> all;
   reserve_large(all, base_size + splits_.size());
-  for (VertexId v = 0; v < base_size; ++v) all.push_back({position_of(base.position(v)), v});
+  for (VertexId v = 0; v < base_size; ++v) all.push_back({place_on_curve(base.position(v)), v});
   for (const PendingSplit& s : splits_) {
-    all.push_back({position_of(point_of(s.u)), static_cast<std::uint32_t>(all.size())});
+    all.push_back({place_on_curve(point_of(s.u)), static_cast<std::uint32_t>(all.size())});
   }
   std::sort(all.begin(), all.end());
   const auto is_of_cell = [&](const Sorted& s) {
