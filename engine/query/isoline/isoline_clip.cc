@@ -187,16 +187,19 @@ class PolygonClip::OfSegment {
 
 ClippedParts PolygonClip::clip(std::span<const MapPoint> line) const {
   JoinedParts parts(line);
-  std::optional<bool> is_in;  // the point at hand; none: a side is near
+  // The point at hand lies within, which is known until a side comes near.
+  bool is_in = false;
+  bool is_known = false;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
     OfSegment segment(line[i], line[i + 1], sides_);
     if (segment.is_near_sides()) {
-      is_in.reset();
+      is_known = false;
       segment.visit_parts([&](MapPoint first, MapPoint last) { parts.add(i, first, last); });
       continue;
     }
-    if (!is_in) is_in = sides_.surround(line[i]);
-    if (*is_in) parts.add(i, line[i], line[i + 1]);
+    if (!is_known) is_in = sides_.surround(line[i]);
+    is_known = true;
+    if (is_in) parts.add(i, line[i], line[i + 1]);
   }
   return parts.finish();
 }
