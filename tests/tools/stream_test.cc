@@ -70,7 +70,7 @@ TEST_F(StreamCli, BringsTheSameMeshAsRefineInFewBytes) {
   }
 }
 
-/// What does not fit the memory goes through files without a name.
+/// Files without a name take what does not fit the memory.
 TEST_F(StreamCli, IsTheSameInAnyMemory) {
   build("coast_257.tif");
   const std::string t = file("t.ptin");

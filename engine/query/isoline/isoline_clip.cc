@@ -187,7 +187,7 @@ class PolygonClip::OfSegment {
 
 ClippedParts PolygonClip::clip(std::span<const MapPoint> line) const {
   JoinedParts parts(line);
-  // The point at hand lies within, which is known until a side comes near.
+  // Whether the point at hand lies within stays known until a side comes near.
   bool is_in = false;
   bool is_known = false;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {

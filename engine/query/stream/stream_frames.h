@@ -17,7 +17,7 @@
 
 namespace ptin {
 
-/// What is sent of a terrain, frame by frame, as cells write it down. Made, it knows how many splits
+/// A stream of a terrain, frame by frame, as cells write it down. Made, it knows how many splits
 /// there are and where frames end. Threads: one owner.
 class StreamFrames {
  public:
@@ -35,7 +35,7 @@ class StreamFrames {
   /// @return the vertices of the base in each cell
   /// @throws Error corruption, io_error, resource_exhausted, cancelled
   [[nodiscard]] virtual std::vector<std::uint64_t> begin() = 0;
-  /// What the cells wrote down of a frame, in the place of what `coded` held. Frames in their order.
+  /// Puts what the cells wrote of a frame in the place of what `coded` held. Frames in their order.
   /// @throws Error as begin()
   virtual void take(std::size_t frame, std::vector<std::byte>& coded) = 0;
   /// Counts the vertices of the frame that was taken last.

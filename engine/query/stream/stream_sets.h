@@ -27,7 +27,7 @@ class StreamSets {
   void hold(PredicatePtr predicate, std::optional<RecordPlace> end) {
     held_.push_back({std::move(predicate), end});
   }
-  /// What it shall have.
+  /// The receiver shall have these.
   void want(PredicatePtr predicate, std::optional<RecordPlace> end = {}) {
     wanted_ = {std::move(predicate), end};
   }
