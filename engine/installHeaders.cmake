@@ -26,6 +26,7 @@ set(public_headers
     engine/construct/collapse/cost.h
     engine/construct/tile/tile_tree.h
     engine/crs/border_move.h
+    engine/crs/credits.h
     engine/crs/crs_facts.h
     engine/crs/ground.h
     engine/crs/ground_facts.h
@@ -140,6 +141,7 @@ set(program_headers
     engine/geometry/hilbert.h
     engine/query/shape/clip.h
     engine/query/shape/tiler.h
+    engine/utf8.h
     storage/file/external_memory.h
     storage/file/external_sorter.h
     storage/file/file_questions.h

@@ -11,6 +11,7 @@
 
 #include "engine/construct/read/class_names.h"
 #include "engine/construct/read/column_names.h"
+#include "engine/crs/credits.h"
 #include "engine/error.h"
 
 namespace ptin {
@@ -64,6 +65,17 @@ const char* fault_of_boundary_layer(const BuildOptions& o) {
   return o.boundary_layer.empty() || !o.boundary.empty()
              ? nullptr
              : "--boundary-layer is for the file that --boundary names; name it, or leave it out";
+}
+
+const char* fault_of_title(const BuildOptions& o) {
+  return is_credit(o.title) ? nullptr
+                            : "a title is at most 1,000 bytes of UTF-8 without control characters";
+}
+
+const char* fault_of_attribution(const BuildOptions& o) {
+  return is_credit(o.attribution)
+             ? nullptr
+             : "an attribution is at most 1,000 bytes of UTF-8 without control characters";
 }
 
 using Option = BuildOption;
@@ -235,6 +247,18 @@ const std::vector<BuildOption>& table() {
        .is_always_kept = true,
        .reads = false,
        .fault = fault_of_tile},
+      {.name = "title",
+       .help = "What the terrain is called, for people: shown wherever the file is",
+       .field = &Options::title,
+       .value = "TEXT",
+       .reads = false,
+       .fault = fault_of_title},
+      {.name = "attribution",
+       .help = "Whom to name where the terrain is shown, as its licence asks",
+       .field = &Options::attribution,
+       .value = "TEXT",
+       .reads = false,
+       .fault = fault_of_attribution},
   };
   return kTable;
 }

@@ -42,6 +42,9 @@ struct BuildOptions {
       bbox;           ///< xmin ymin xmax ymax in CRS units; samples outside are left out.
   std::string a_srs;  ///< Overrides the source's CRS (anything GDAL understands); "" keeps it.
   std::string vertical_crs;  ///< "" keeps what the source declares, if anything.
+  /// What the terrain is called, and who is to be named where it is shown; "" for none. Metadata alone:
+  /// of all other sections the bytes are the same.
+  std::string title, attribution;
   double void_slope =
       1.0;  ///< Height error charged per ground unit that the border of voids moves.
   /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().

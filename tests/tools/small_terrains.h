@@ -23,16 +23,16 @@ void write_file(const std::string& path, const std::string& content);
 struct RasterRecipe {
   int width = 33;
   int height = 33;
-  std::function<double(int column, int row)> value;
-  std::optional<double> nodata;
+  std::function<double(int column, int row)> value{};
+  std::optional<double> nodata{};
   double west = 500000.0;
   double north = 4000000.0;
   double pixel = 30.0;
   bool columns_go_west = false;  ///< The first column is the easternmost: a negative pixel width.
   int epsg = 32611;              ///< 0: no CRS.
   std::string type = "Float32";  ///< By GDAL's name.
-  std::string unit;              ///< The unit of the heights, as the band declares it.
-  std::vector<std::string> creation;  ///< Options of GDAL's driver.
+  std::string unit{};            ///< The unit of the heights, as the band declares it.
+  std::vector<std::string> creation{};  ///< Options of GDAL's driver.
 };
 /// Writes it as a GeoTIFF.
 void make_raster(const std::string& path, const RasterRecipe& recipe);

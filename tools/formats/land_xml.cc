@@ -3,6 +3,7 @@
 
 #include "engine/crs/height_unit.h"
 #include "engine/error.h"
+#include "tools/formats/markup_text.h"
 #include "tools/formats/mesh_stream.h"
 #include "tools/formats/number_text.h"
 #include "tools/output/output_file.h"
@@ -15,23 +16,7 @@ namespace {
 /// ` name="value"`, or nothing where there is no value.
 std::string attribute(const char* name, const std::string& value) {
   if (value.empty()) return {};
-  std::string text = std::string(" ") + name + "=\"";
-  for (const char c : value) {
-    switch (c) {
-      case '&':
-        text += "&amp;";
-        break;
-      case '<':
-        text += "&lt;";
-        break;
-      case '"':
-        text += "&quot;";
-        break;
-      default:
-        text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-  }
-  return text += '"';
+  return std::string(" ") + name + "=\"" + markup_text(value) + "\"";
 }
 
 /// LandXML's word for a unit of heights that is not that of the plane; it knows one foot.

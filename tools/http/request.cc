@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 
+#include "engine/utf8.h"
 #include "tools/http/problem.h"
 
 namespace ptin::http {
@@ -20,26 +21,12 @@ int hex_digit(char c) noexcept {
   return -1;
 }
 
-/// The bytes that follow a first byte of UTF-8; -1 where it is none.
-int following_bytes(unsigned char first) noexcept {
-  if (first < 0x80) return 0;
-  if (first >= 0xC2 && first < 0xE0) return 1;
-  if (first >= 0xE0 && first < 0xF0) return 2;
-  if (first >= 0xF0 && first < 0xF5) return 3;
-  return -1;
-}
-
 bool is_plain_utf8(std::string_view text) noexcept {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (c == '\t') continue;
-    if (c < 0x20 || c == 0x7F) return false;
-    int more = following_bytes(c);
-    if (more < 0) return false;
-    for (; more > 0; --more) {
-      if (++i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U)
-        return false;
-    }
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto c = static_cast<unsigned char>(text[0]);
+    if (length == 0 || (c < 0x20 && c != '\t') || c == 0x7F) return false;
+    text.remove_prefix(length);
   }
   return true;
 }

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "storage/index_shape.h"
 #include "tools/error_status.h"
@@ -95,31 +96,33 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
   std::uint64_t void_vertices = 0;
   for (const ErrorBin& bin : store.error_bins()) void_vertices += bin.void_vertices;
   for (const auto& v : store.t0().vertices) void_vertices += v.has_height == 0;
-  return {{"file", store.path()},
-          {"bytes", store.file_bytes()},
-          {"crs", crs_json(crs)},
-          {"units", ask::units_json(crs)},
-          {"bounds", bounds_json(facts)},
-          {"grid",
-           {{"origin", {facts.map.origin_x, facts.map.origin_y}},
-            {"step", {facts.map.step_x, facts.map.step_y}}}},
-          {"heights", heights_json(facts)},
-          {"source_samples", facts.source_samples},
-          {"free_of_voids", facts.free_of_voids},
-          {"vertices", store.t0().vertices.size() + store.record_count()},
-          {"void_vertices", void_vertices},
-          {"records", store.record_count()},
-          {"t0_vertices", store.t0().vertices.size()},
-          {"t0_triangles", store.t0().triangles.size()},
-          {"rank", store.max_rank()},
-          {"base_error", facts.base_error},
-          {"base_deviation", facts.base_deviation},
-          {"error_quantiles", errors_json(store, "error")},
-          {"vertices_at_tolerance", levels},
-          {"tree", tree_json(store)},
-          {"sections", sections},
-          {"remote", remote_json(store)},
-          {"metadata", metadata}};
+  nlohmann::json json{{"file", store.path()},
+                      {"bytes", store.file_bytes()},
+                      {"crs", crs_json(crs)},
+                      {"units", ask::units_json(crs)},
+                      {"bounds", bounds_json(facts)},
+                      {"grid",
+                       {{"origin", {facts.map.origin_x, facts.map.origin_y}},
+                        {"step", {facts.map.step_x, facts.map.step_y}}}},
+                      {"heights", heights_json(facts)},
+                      {"source_samples", facts.source_samples},
+                      {"free_of_voids", facts.free_of_voids},
+                      {"vertices", store.t0().vertices.size() + store.record_count()},
+                      {"void_vertices", void_vertices},
+                      {"records", store.record_count()},
+                      {"t0_vertices", store.t0().vertices.size()},
+                      {"t0_triangles", store.t0().triangles.size()},
+                      {"rank", store.max_rank()},
+                      {"base_error", facts.base_error},
+                      {"base_deviation", facts.base_deviation},
+                      {"error_quantiles", errors_json(store, "error")},
+                      {"vertices_at_tolerance", levels},
+                      {"tree", tree_json(store)},
+                      {"sections", sections},
+                      {"remote", remote_json(store)},
+                      {"metadata", metadata}};
+  add_credits(json, credits_of(metadata));
+  return json;
 }
 
 /// Numbers as they are, or a list of whole ones as ranges: [0-6,8-17,19-255].
@@ -146,6 +149,7 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
   for (const auto& [key, value] : object.items()) {
     if (key == "crs" || key == "crs_wkt" || value.is_null()) continue;
     const std::string name = prefix.empty() ? key : prefix + "." + key;
+    if (name == "options.title" || name == "options.attribution") continue;
     if (value.is_object()) {
       print_metadata(value, name);
     } else {
@@ -153,6 +157,12 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
       if (!text.empty()) std::printf("  %-28s %s\n", name.c_str(), printable(text).c_str());
     }
   }
+}
+
+void print_credits(const Credits& credits) {
+  // Texts that count hold no control characters.
+  if (!credits.title.empty()) std::printf("title      %s\n", credits.title.c_str());
+  if (!credits.attribution.empty()) std::printf("credit     %s\n", credits.attribution.c_str());
 }
 
 void print_place(const StoreFile& store, const CrsFacts& crs) {
@@ -225,6 +235,7 @@ void print_info(const StoreFile& store, const CrsFacts& crs) {
         "elsewhere  opened by %s in %s, %s\n", counted(cost->remote_requests, "request").c_str(),
         counted(cost->remote_rounds, "round").c_str(), human_bytes(cost->remote_bytes).c_str());
   }
+  print_credits(credits_of(store));
   print_place(store, crs);
   print_counts(store);
   print_errors(store);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
@@ -117,6 +118,7 @@ std::string metadata_of_stream(const StoreFile& store, const Serving& wanted) {
   // A receiver without a library of projections tells lengths over ground by these.
   metadata["ground"] = json_of(ground_facts_of(crs_facts_of(all)));
   if (metadata.contains("crs") && metadata["crs"].is_object()) metadata["crs"].erase("facts");
+  add_credits(metadata, credits_of(all));
   metadata["free_of_voids"] = store.facts().free_of_voids;
   const nlohmann::json options = all.value("options", nlohmann::json::object());
   if (const auto it = options.find("void_slope"); it != options.end()) {

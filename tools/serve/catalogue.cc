@@ -72,6 +72,7 @@ Collection::Collection(std::string name, const std::string& path)
       identity(identity_of(path).value_or(FileIdentity{})),
       terrain(opened(path)),
       crs(crs_facts(terrain.store())),
+      credits(credits_of(terrain.store())),
       ground(ground_of(crs)),
       fingerprint(http::hex_of(terrain.store().fingerprint())) {
   const StoreFacts& facts = terrain.store().facts();

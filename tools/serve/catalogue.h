@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "engine/query/questions.h"
@@ -40,11 +41,17 @@ struct Collection {
   FileIdentity identity;
   Terrain terrain;
   CrsFacts crs;
+  Credits credits;
   Ground ground;
   std::string fingerprint;        ///< A hash of the content, as hexadecimal digits.
   Window bounds{};                ///< Map units.
   std::optional<Window> lon_lat;  ///< Degrees east and north of CRS84; none: not known.
   mutable TileSets tile_sets;
+
+  /// What people know it by: its title, or else its name.
+  [[nodiscard]] const std::string& title() const noexcept {
+    return credits.title.empty() ? id : credits.title;
+  }
 };
 
 /// Changes whenever the bytes of any answer may: with the file, and with the program.

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "tools/formats/markup_text.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
@@ -48,11 +49,11 @@ Json terrain_json(const Collection& c) {
 Json collection_json(const Collection& c) {
   const std::string base = "/collections/" + c.id, crs = uri_of(c.crs);
   Json json = {{"id", c.id},
-               {"title", c.id},
                {"links",
                 {link(base, "self", kJson, "this document"),
                  link(base + "/stream", "item", "application/vnd.ptin.stream",
                       "progressive transmission")}}};
+  add_credits(json, c.credits);
   const Window w = c.lon_lat.value_or(c.bounds);
   json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
                                {"crs", c.lon_lat ? kCrs84 : std::string_view(crs)}};
@@ -95,6 +96,12 @@ Json landing_json() {
             link("/collections", "data", kJson, "the terrains")}}};
 }
 
+/// Whom to name, behind a terrain.
+std::string credit_html(const Collection& c) {
+  const std::string& text = c.credits.attribution;
+  return text.empty() ? "" : " <small>" + tools::markup_text(text) + "</small>";
+}
+
 std::string landing_html(const Asked& asked) {
   std::string page =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
@@ -103,8 +110,9 @@ std::string landing_html(const Asked& asked) {
       "system-ui;max-width:46rem;margin:3rem auto;padding:0 "
       "1rem}</style><main><h1>Terrains</h1><ul>";
   for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
-    page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" + c->id +
-            "</a> (<a href=\"/collections/" + c->id + "\">facts</a>)</li>";
+    page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" +
+            tools::markup_text(c->title()) + "</a> (<a href=\"/collections/" + c->id +
+            "\">facts</a>)" + credit_html(*c) + "</li>";
   }
   return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></main></html>\n";
 }

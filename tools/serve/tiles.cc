@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/formats/markup_text.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
@@ -73,9 +74,23 @@ http::Response tile_response(const Asked& asked, tools::Tile tile, std::string_v
   return answered(asked, std::move(tile.bytes), media, tile.cost, tile.error, false);
 }
 
+/// What a tileset tells people: 3D Tiles have no members of their own for it.
+Json extras_of(const Credits& credits) {
+  Json extras = Json::object();
+  add_credits(extras, credits);
+  if (credits.attribution.empty()) return extras;
+  // Where Cesium looks for what it shows beside the picture.
+  Json credit = {{"html", tools::markup_text(credits.attribution)}, {"showOnScreen", true}};
+  extras["cesium"]["credits"] = Json::array({std::move(credit)});
+  return extras;
+}
+
 http::Response layer_json(const Asked& asked) {
   Json json = quantized(asked)->layer_json(version_of(*asked.collection, asked.options.version));
-  json["name"] = asked.collection->id;  // The title of the collection.
+  json["name"] = asked.collection->title();
+  const std::string& attribution = asked.collection->credits.attribution;
+  // Cesium shows it as HTML.
+  if (!attribution.empty()) json["attribution"] = tools::markup_text(attribution);
   json["ptin:heights"] = datum_name(tools::vertical_datum(asked.collection->crs));
   return json_response(json);
 }
@@ -108,7 +123,11 @@ http::Response answer_tiles(const Asked& asked) {
 }
 
 http::Response answer_tileset(const Asked& asked) {
-  return json_response(tileset(asked)->tileset_json());
+  Json json = tileset(asked)->tileset_json();
+  if (Json extras = extras_of(asked.collection->credits); !extras.empty()) {
+    json["asset"]["extras"] = std::move(extras);
+  }
+  return json_response(json);
 }
 
 http::Response answer_subtree(const Asked& asked) {
