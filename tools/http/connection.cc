@@ -242,19 +242,15 @@ std::shared_ptr<Request> Connection::request_of_head() {
   request->id = host_.next_request++;
   request->method = std::string(head.method_string());
   request->target = std::string(head.target());
-  std::string forwarded_for;
   for (const auto& field : head) {
     request->headers.emplace_back(lower({field.name_string().data(), field.name_string().size()}),
                                   std::string(field.value()));
-    if (is_of_proxy_ && request->headers.back().first == "x-forwarded-for") {
-      forwarded_for += (forwarded_for.empty() ? "" : ",") + request->headers.back().second;
-    }
   }
-  const auto client = client_of(peer_, forwarded_for, host_.limits.trusted_proxies);
+  if (is_of_proxy_) request->forwarded = forwarded_of(request->headers);
+  const auto client = client_of(peer_, request->forwarded.client, host_.limits.trusted_proxies);
   request->remote = client.to_string();
   request->share = share_of(client);
-  request->is_secure =
-      is_of_proxy_ && lower(request->header("x-forwarded-proto").value_or("")) == "https";
+  request->is_secure = request->forwarded.proto == "https";
   stop_ = std::stop_source();
   request->stop = stop_.get_token();
   given_up_ = GivenUp::kNot;
@@ -269,11 +265,13 @@ void Connection::check_head() {
   refusal_.reset();
   request_->path = path_of(request_->target);  // Where the rest of the target is refused.
   try {
+    host_.service.enter(*request_);
     const bool is_of_all = request_->method == "OPTIONS" && request_->target == "*";
     Target target = parse_target(is_of_all ? "/" : request_->target);
     request_->path = std::move(target.path);
     request_->parameters = std::move(target.parameters);
     request_->is_parsed = true;
+    host_.service.enter(*request_);
     if (host_.service.is_quick(*request_)) return;
     if (is_extra_) {
       throw Problem(503, "the server has as many connections as it takes; come again later")

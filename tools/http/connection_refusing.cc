@@ -113,6 +113,7 @@ void Connection::refuse(const Problem& problem) {
           !target.empty()
               ? std::string_view(target.data(), target.size())
               : target_of_line({static_cast<const char*>(buffer_.data().data()), buffer_.size()}));
+      host_.service.enter(*request_);
     }
   }
   Response response = problem.response();

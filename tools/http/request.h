@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/http/forwarded.h"
 #include "tools/http/memory_budget.h"
 
 namespace ptin::http {
@@ -48,6 +49,10 @@ struct Request {
   std::string remote;      ///< Address of the client, from a trusted proxy where there is one.
   std::string share;       ///< Under this name the client has its share.
   bool is_secure = false;  ///< A trusted proxy says that the client speaks HTTPS.
+  Forwarded forwarded;     ///< What a trusted proxy says; empty of all other clients.
+  /// What addresses of this server begin with in the answer: "" or "/terrain", and with a host before
+  /// it where the service knows it; and the path in it. Service::enter() has set them.
+  std::string base, prefix;
   /// Memory that was lent before the request is answered; gone once it was.
   std::shared_ptr<MemoryBudget::Lease> memory;
   std::stop_token stop;  ///< Fires when nobody waits for the answer any more.

@@ -36,6 +36,8 @@ class Service {
  public:
   virtual ~Service() = default;
 
+  /// Called first, as soon as the path of a request is known: may take away what a proxy put before it.
+  virtual void enter(Request& /*request*/) const {}
   /// Whether the request goes to answer_quickly(), beside all lanes and their limits.
   [[nodiscard]] virtual bool is_quick(const Request& request) const = 0;
   /// Looks at the head of a request before its body is read: throws a Problem where it is refused

@@ -35,7 +35,7 @@ namespace {
 
 struct ServeCommand {
   std::vector<std::string> files;
-  std::string listen, cors, token_file, metrics;  // Empty: not given.
+  std::string listen, public_url, cors, token_file, metrics;  // Empty: not given.
   std::string config, memory;
   std::vector<std::string> limits, trusted_proxies;
   int threads = 0;  ///< 0: as many as the process may use.
@@ -68,6 +68,9 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   for (const std::string& file : command.files) options.files.push_back(served_file(file));
   if (options.files.empty()) refuse("no file is given: name files, or --config with [collections]");
   if (!command.listen.empty()) options.listen = command.listen;
+  if (!command.public_url.empty()) {
+    options.public_address = serve::public_address_of(command.public_url, "--public-url");
+  }
   if (!command.cors.empty()) {
     options.cors_origin = serve::checked_origin(command.cors, "--cors");
   }
@@ -155,8 +158,11 @@ void add_question(ask::Parameters& rows, ServeCommand& command) {
       .spelled("FILE")
       .values(1, ask::kAnyNumberOfValues);
   rows.add("listen", &command.listen, "ADDRESS:PORT", "Where to listen; 127.0.0.1:8080 without it");
+  rows.add("public-url", &command.public_url, "URL",
+           "The address under which clients know the service, as https://example.org/terrain/: "
+           "addresses in answers begin with it");
   rows.add("config", &command.config, "FILE",
-           "TOML: listen, threads, cors, token_file, files, metrics, trusted_proxies, "
+           "TOML: listen, threads, public_url, cors, token_file, files, metrics, trusted_proxies, "
            "[collections], [limits]; options win over it");
   ask::add_threads(rows, command.threads,
                    "Questions of each lane (points, tiles, sweeps) that are computed at once");
@@ -170,7 +176,9 @@ void add_question(ask::Parameters& rows, ServeCommand& command) {
   rows.add("metrics", &command.metrics, "WHO",
            "Who reads /metrics: open, token, closed; without it whoever may ask questions");
   rows.add("trusted-proxy", &command.trusted_proxies, "ADDRESS[/BITS]",
-           "A proxy that is believed its X-Forwarded-For and -Proto; may be given often")
+           "A proxy that is believed its X-Forwarded-For, -Proto, -Host and -Prefix, and "
+           "Forwarded; may "
+           "be given often")
       .repeated();
   rows.add("files", &command.offers_files, "", "Give out the files themselves, by ranges");
 }

@@ -140,9 +140,11 @@ http::Response Access::login(const http::Request& request) const {
   if (!is_same_secret(given, token_)) throw Problem(401, "this is not the token of this service");
   http::Response response;
   response.status = 303;
-  response.add("Location", target_without_token(request));
+  // Without a host: what a header says of it leads nobody elsewhere.
+  response.add("Location", request.prefix + target_without_token(request));
   response.add("Set-Cookie", std::string(kCookie) + hex_of_text(token_) +
-                                 "; Path=/; HttpOnly; SameSite=Strict" +
+                                 "; Path=" + (request.prefix.empty() ? "/" : request.prefix) +
+                                 "; HttpOnly; SameSite=Strict" +
                                  (request.is_secure ? "; Secure" : ""));
   response.add("Cache-Control", "no-store");
   response.add("Referrer-Policy", "no-referrer");

@@ -219,7 +219,7 @@ Json refusal_response() {
 
 }  // namespace
 
-Json openapi(std::span<const Endpoint> all, const ServeOptions& options) {
+Json openapi(std::span<const Endpoint> all, const ServeOptions& options, const std::string& base) {
   Json paths = Json::object();
   for (const Endpoint& endpoint : all) {
     std::string path(endpoint.path);
@@ -241,14 +241,15 @@ Json openapi(std::span<const Endpoint> all, const ServeOptions& options) {
         {"version", options.version},
         {"license",
          {{"name", "GPL-3.0-or-later"}, {"url", "https://www.gnu.org/licenses/gpl-3.0.html"}}}}},
-      {"servers", Json::array({{{"url", "/"}}})},
+      {"servers", Json::array({{{"url", base.empty() ? "/" : base}}})},
       {"security", std::move(security)},
       {"paths", std::move(paths)},
       {"components", std::move(components)}};
 }
 
 http::Response answer_api(const Asked& asked) {
-  return json_response(openapi(endpoints(), asked.options), format_of(asked).media);
+  return json_response(openapi(endpoints(), asked.options, asked.request.base),
+                       format_of(asked).media);
 }
 
 }  // namespace ptin::serve

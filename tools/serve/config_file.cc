@@ -41,6 +41,8 @@ void take_setting(const std::string& name, const std::string& value, const std::
                   ServeOptions& options) {
   if (name == "listen") {
     options.listen = value;
+  } else if (name == "public_url") {
+    options.public_address = public_address_of(value, path);
   } else if (name == "cors") {
     options.cors_origin = checked_origin(value, path);
   } else if (name == "token_file") {
@@ -58,11 +60,11 @@ void take_setting(const std::string& name, const std::string& value, const std::
       refuse("threads is no whole number from 1 to " + std::to_string(kMostThreads), path);
     }
   } else {
-    refuse(
-        "\"" + name +
-            "\" means nothing here; there are listen, threads, cors, token_file, files, metrics, "
-            "trusted_proxies, and the tables [collections] and [limits]",
-        path);
+    refuse("\"" + name +
+               "\" means nothing here; there are listen, threads, public_url, cors, token_file, "
+               "files, "
+               "metrics, trusted_proxies, and the tables [collections] and [limits]",
+           path);
   }
 }
 

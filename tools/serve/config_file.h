@@ -9,7 +9,7 @@
 
 namespace ptin::serve {
 
-/// Reads a configuration into `options`: `listen`, `threads`, `cors`, `token_file`, `files` (true or
+/// Reads a configuration into `options`: `listen`, `threads`, `public_url`, `cors`, `token_file`, `files` (true or
 /// false), `metrics`, `trusted_proxies` (addresses between commas), a table [collections] of NAME = "FILE", where a name that is no path from the root counts
 /// from the folder of the configuration, and a table [limits].
 /// @throws Error not_found, io_error

@@ -46,8 +46,8 @@ Json terrain_json(const Collection& c) {
           {"bytes", c.terrain.store().file_bytes()}};
 }
 
-Json collection_json(const Collection& c) {
-  const std::string base = "/collections/" + c.id, crs = uri_of(c.crs);
+Json collection_json(const Collection& c, const std::string& root) {
+  const std::string base = root + "/collections/" + c.id, crs = uri_of(c.crs);
   Json json = {{"id", c.id},
                {"links",
                 {link(base, "self", kJson, "this document"),
@@ -77,23 +77,23 @@ Json collection_json(const Collection& c) {
 Json all_json(const Asked& asked) {
   Json collections = Json::array();
   for (const auto& collection : asked.catalogue.all()) {
-    collections.push_back(collection_json(*collection));
+    collections.push_back(collection_json(*collection, asked.request.base));
   }
-  return {{"links", {link("/collections", "self", kJson, "this document")}},
+  return {{"links", {link(asked.request.base + "/collections", "self", kJson, "this document")}},
           {"collections", std::move(collections)}};
 }
 
-Json landing_json() {
+Json landing_json(const std::string& root) {
   return {{"title", "Terrains"},
           {"description",
            "Heights, contours, lines of sight and meshes of terrains, each answer "
            "exact or within a certified error"},
           {"links",
-           {link("/", "self", kJson, "this document"),
-            link("/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0",
+           {link(root + "/", "self", kJson, "this document"),
+            link(root + "/api", "service-desc", "application/vnd.oai.openapi+json;version=3.0",
                  "the service as OpenAPI"),
-            link("/conformance", "conformance", kJson, "standards"),
-            link("/collections", "data", kJson, "the terrains")}}};
+            link(root + "/conformance", "conformance", kJson, "standards"),
+            link(root + "/collections", "data", kJson, "the terrains")}}};
 }
 
 /// Whom to name, behind a terrain.
@@ -102,7 +102,14 @@ std::string credit_html(const Collection& c) {
   return text.empty() ? "" : " <small>" + tools::markup_text(text) + "</small>";
 }
 
+/// The page asks the service at the root of its host unless it is told.
+std::string viewer_address(const std::string& root, const std::string& id) {
+  const std::string address = root + "/viewer/index.html?collection=" + id;
+  return root.empty() ? address : address + "&amp;service=" + root;
+}
+
 std::string landing_html(const Asked& asked) {
+  const std::string& root = asked.request.base;  // It holds nothing that HTML would read.
   std::string page =
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
       "<meta name=\"viewport\" content=\"width=device-width\">"
@@ -110,18 +117,19 @@ std::string landing_html(const Asked& asked) {
       "system-ui;max-width:46rem;margin:3rem auto;padding:0 "
       "1rem}</style><main><h1>Terrains</h1><ul>";
   for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
-    page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" +
-            tools::markup_text(c->title()) + "</a> (<a href=\"/collections/" + c->id +
+    page += "<li><a href=\"" + viewer_address(root, c->id) + "\">" +
+            tools::markup_text(c->title()) + "</a> (<a href=\"" + root + "/collections/" + c->id +
             "\">facts</a>)" + credit_html(*c) + "</li>";
   }
-  return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></main></html>\n";
+  return page + "</ul><p><a href=\"" + root +
+         "/api\">The service as OpenAPI</a></p></main></html>\n";
 }
 
 }  // namespace
 
 http::Response answer_landing(const Asked& asked) {
   http::Response response = format_of(asked).name == "json"
-                                ? json_response(landing_json())
+                                ? json_response(landing_json(asked.request.base))
                                 : text_response(landing_html(asked), "text/html; charset=utf-8");
   if (!asked.question.has("f")) response.add("Vary", "Accept");
   return response;
@@ -136,7 +144,8 @@ http::Response answer_collections(const Asked& asked) {
 }
 
 http::Response answer_collection(const Asked& asked) {
-  return json_response(collection_json(*asked.collection), format_of(asked).media);
+  return json_response(collection_json(*asked.collection, asked.request.base),
+                       format_of(asked).media);
 }
 
 }  // namespace ptin::serve

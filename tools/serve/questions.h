@@ -24,7 +24,9 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
     answer_collection;
 
 /// A service of these questions as OpenAPI 3.0.
-[[nodiscard]] ask::Json openapi(std::span<const Endpoint> all, const ServeOptions& options);
+/// @param base  As of http::Request.
+[[nodiscard]] ask::Json openapi(std::span<const Endpoint> all, const ServeOptions& options,
+                                const std::string& base = {});
 
 // The parameters that they take, as rows that describe them, but for `f`.
 [[nodiscard]] ask::Parameters viewer_parameters();

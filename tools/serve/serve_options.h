@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/http/limits.h"
+#include "tools/serve/public_address.h"
 
 namespace ptin::serve {
 
@@ -44,7 +45,8 @@ enum class MetricsFor : std::uint8_t {
 struct ServeOptions {
   std::vector<ServedFile> files;
   std::string listen = "127.0.0.1:8080";
-  http::Limits http;  ///< Its memory is divided by divide_memory().
+  PublicAddress public_address;  ///< Unknown: trusted proxies tell it, or addresses are paths.
+  http::Limits http;             ///< Its memory is divided by divide_memory().
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.

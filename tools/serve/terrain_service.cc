@@ -142,6 +142,8 @@ TerrainService::TerrainService(ServeOptions options, LogLine log)
                          "Memory lent to bodies, questions and answers.");
 }
 
+void TerrainService::enter(Request& request) const { enter_by(options_.public_address, request); }
+
 bool TerrainService::is_quick(const Request& request) const {
   if (request.method == "OPTIONS" || access_.is_login(request)) return true;
   return request.path.size() == 1 &&
@@ -235,10 +237,11 @@ Response TerrainService::answer(const Request& request) {
   return answer_endpoint(request, match(request));
 }
 
-/// What an answer depends on: the file, the question, and what the client takes.
+/// What an answer depends on: the file, the question, what the client takes, and where it found us.
 std::string TerrainService::key_of(const Request& request, const Match& found,
                                    const Collection* collection, const Question& question) const {
   std::string key = options_.version + "\n" + std::string(found.endpoint->path) + "\n";
+  key += request.base + "\n";
   if (collection != nullptr) key += collection->fingerprint + collection->id;
   return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
          http::list_of(request, "accept");

@@ -28,6 +28,7 @@ class TerrainService : public http::Service {
   /// Opens every file.  @throws Error as Catalogue
   TerrainService(ServeOptions options, LogLine log);
 
+  void enter(http::Request& request) const override;
   [[nodiscard]] bool is_quick(const http::Request& request) const override;
   void check(const http::Request& head) const override;
   [[nodiscard]] http::Needs needs(const http::Request& request) const override;
