@@ -122,7 +122,8 @@ TEST_F(Serve, AnswersItsExamplesInTheMediaThatItLists) {
   for (const ListedQuestion& question : all) {
     for (const auto& [media, unused] : question.content.items()) {
       const bool is_features_of_v1 =  // Others' clients ask for them by `format`.
-          question.target.starts_with("/v1") && media == "application/geo+json";
+          (question.target.starts_with("/v1") || question.target.starts_with("/maps/")) &&
+          media == "application/geo+json";
       if (is_features_of_v1) continue;
       SCOPED_TRACE(question.target + " as " + media);
       const HttpAnswer answer = get(question.target, "Accept: " + media + "\r\n");

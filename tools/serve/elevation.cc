@@ -7,12 +7,16 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/crs/ground.h"
 #include "engine/number.h"
 #include "tools/ask/questions.h"
+#include "tools/facts/answers.h"
 #include "tools/facts/human.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
@@ -65,6 +69,23 @@ void add_question(ask::Parameters& rows, ElevationQuestion& question) {
            "Certified error allowed, in metres; without it: full detail")
       .within(NumberRange::kNotNegative)
       .at(kService)
+      .like("5");
+}
+
+struct LookupQuestion {
+  std::optional<double> error;  ///< Metres.
+};
+
+void add_question(ask::Parameters& rows, LookupQuestion& question) {
+  ask::add_text(rows, "locations",
+                "lat,lng|lat,lng... or an encoded polyline; in the JSON of a POST an array of "
+                "{latitude, longitude}",
+                "34.34,-118.3|34.35,-118.29")
+      .as_json();
+  rows.add("error", &question.error, "",
+           "Certified error allowed, in metres; without it: full detail")
+      .within(NumberRange::kNotNegative)
+      .at(ask::Door::kService)
       .like("5");
 }
 
@@ -183,6 +204,45 @@ Collections collections_of(const Asked& asked) {
   return collections;
 }
 
+/// Metres between samples if they lay on a grid over the terrain's box: how fine a terrain is, also where
+/// its grid is finer than its points.
+double sample_distance(const Collection& c) {
+  const Window& w = c.bounds;
+  const auto unit = metres_per_map_unit(c.crs, {(w.min_x + w.max_x) / 2, (w.min_y + w.max_y) / 2});
+  const auto samples = static_cast<double>(c.terrain.store().facts().source_samples);
+  if (!unit || samples == 0) return std::numeric_limits<double>::infinity();
+  return std::sqrt((w.max_x - w.min_x) * unit->x * (w.max_y - w.min_y) * unit->y / samples);
+}
+
+/// All collections that have a place on the Earth, the finest first; of equal ones by name.
+Collections collections_by_detail(const Asked& asked) {
+  std::vector<std::pair<double, std::shared_ptr<const Collection>>> ordered;
+  for (auto& collection : asked.catalogue.all()) {  // By name.
+    if (!collection->lon_lat) continue;
+    const double distance = sample_distance(*collection);
+    ordered.emplace_back(distance, std::move(collection));
+  }
+  if (ordered.empty()) {
+    throw Problem(404,
+                  "no terrain of this service states its CRS, so none has a known place on the "
+                  "Earth; /collections lists them");
+  }
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  Collections collections;
+  for (auto& [distance, collection] : ordered) collections.push_back(std::move(collection));
+  return collections;
+}
+
+/// Whether a position may lie in a collection.
+bool may_hold(const Collection& collection, const MapPoint& lon_lat) {
+  if (!collection.lon_lat) return true;
+  const Window& w = *collection.lon_lat;
+  if (lon_lat.y < w.min_y || lon_lat.y > w.max_y) return false;
+  const bool is_east = lon_lat.x >= w.min_x, is_west = lon_lat.x <= w.max_x;
+  return w.min_x <= w.max_x ? is_east && is_west : is_east || is_west;
+}
+
 /// @param error  Allowed, in metres.
 LocateResult locate_in(const Collection& collection, const Asked& asked, std::vector<MapPoint> at,
                        std::optional<double> error) {
@@ -195,16 +255,24 @@ LocateResult locate_in(const Collection& collection, const Asked& asked, std::ve
 }
 
 /// Asks the collections one after the other for what the ones before have no surface at.
-Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_lat,
-                         std::optional<double> error) {
+Elevations elevations_of(const Asked& asked, const Collections& collections,
+                         const std::vector<MapPoint>& lon_lat, std::optional<double> error) {
   Elevations found;
   found.points.resize(lon_lat.size());
   found.dataset.resize(lon_lat.size());
   found.metres.assign(lon_lat.size(), 1.0);
   std::vector<std::size_t> open(lon_lat.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = i;
-  for (const auto& collection : collections_of(asked)) {
-    if (open.empty()) break;
+  for (const auto& collection : collections) {
+    // The others are outside: the extent holds all of the terrain.
+    const auto far = std::stable_partition(
+        open.begin(), open.end(), [&](std::size_t i) { return may_hold(*collection, lon_lat[i]); });
+    for (const std::size_t i : open) {
+      if (found.dataset[i].empty()) found.dataset[i] = collection->id;
+    }
+    if (far == open.begin()) continue;
+    std::vector<std::size_t> still_open(far, open.end());
+    open.erase(far, open.end());
     std::vector<MapPoint> at;
     for (const std::size_t i : open) at.push_back(lon_lat[i]);
     const LocateResult result = locate_in(*collection, asked, std::move(at), error);
@@ -213,10 +281,9 @@ Elevations elevations_of(const Asked& asked, const std::vector<MapPoint>& lon_la
     found.exact = found.exact && result.exact;
     const double metres = collection->ground.metres_per_height;
     found.certified_error = std::max(found.certified_error, result.certified_error * metres);
-    std::vector<std::size_t> still_open;
     for (std::size_t i = 0; i < open.size(); ++i) {
       const LocatedPoint& p = result.points[i];
-      if (found.dataset[open[i]].empty() || p.state != PointState::kOutside) {
+      if (p.state != PointState::kOutside) {
         found.points[open[i]] = p;
         found.dataset[open[i]] = collection->id;
         found.metres[open[i]] = metres;
@@ -262,16 +329,13 @@ Json feature_json(Json result) {
           {"properties", std::move(result)}};
 }
 
-}  // namespace
-
-ask::Parameters elevation_parameters() { return described<ElevationQuestion>(); }
-
-http::Response answer_elevation(const Asked& asked) {
+/// As Google's Elevation API and opentopodata.
+http::Response elevation_answer(const Asked& asked, const Collections& collections) {
   const auto question = read<ElevationQuestion>(asked);
   const bool as_features = question.format == "geojson";
   const std::vector<MapPoint> lon_lat = asked_places(asked, question);
   const Json nodata = nodata_of(question.nodata);
-  const Elevations found = elevations_of(asked, lon_lat, question.error);
+  const Elevations found = elevations_of(asked, collections, lon_lat, question.error);
   const auto fields = ask::located_fields().told(kFeature);
   Json results = Json::array();
   for (std::size_t i = 0; i < lon_lat.size(); ++i) {
@@ -288,6 +352,41 @@ http::Response answer_elevation(const Asked& asked) {
     json.update(certainty);
   }
   return answered(asked, text_of(json), as_features ? kGeoJson : kJson, found.cost,
+                  found.certified_error, found.exact);
+}
+
+}  // namespace
+
+ask::Parameters elevation_parameters() { return described<ElevationQuestion>(); }
+
+ask::Parameters lookup_parameters() { return described<LookupQuestion>(); }
+
+http::Response answer_elevation(const Asked& asked) {
+  return elevation_answer(asked, collections_of(asked));
+}
+
+http::Response answer_google_elevation(const Asked& asked) {
+  return elevation_answer(asked, collections_by_detail(asked));
+}
+
+/// Where there is no elevation it is null, and not 0 as at open-elevation, which nobody can tell from
+/// the sea.
+http::Response answer_lookup(const Asked& asked) {
+  const auto question = read<LookupQuestion>(asked);
+  const std::vector<MapPoint> lon_lat = asked_places(asked, {});
+  const Elevations found =
+      elevations_of(asked, collections_by_detail(asked), lon_lat, question.error);
+  Json results = Json::array();
+  for (std::size_t i = 0; i < lon_lat.size(); ++i) {
+    const LocatedPoint& p = found.points[i];
+    const bool is_surface = p.state == PointState::kSurface;
+    results.push_back({{"latitude", lon_lat[i].y},
+                       {"longitude", lon_lat[i].x},
+                       {"elevation", is_surface ? Json(p.height * found.metres[i]) : Json()},
+                       {"state", tools::name_of(p.state)},
+                       {"dataset", is_surface ? Json(found.dataset[i]) : Json()}});
+  }
+  return answered(asked, text_of({{"results", std::move(results)}}), kJson, found.cost,
                   found.certified_error, found.exact);
 }
 

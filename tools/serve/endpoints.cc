@@ -131,6 +131,14 @@ std::vector<Endpoint> made_table() {
        "Elevations in metres, as Google's Elevation API and opentopodata answer",
        elevation_parameters(), kElevationMedia, Lane::kPoint, Reserves::kQuarter, answer_elevation,
        refuse_elevation},
+      {"/maps/api/elevation/json", "google_elevation", true,
+       "The same from all terrains, the finest one first, at the path of Google's API",
+       elevation_parameters(), kElevationMedia, Lane::kPoint, Reserves::kQuarter,
+       answer_google_elevation, refuse_elevation},
+      {"/api/v1/lookup", "lookup", true,
+       "Elevations in metres from all terrains, the finest one first, as open-elevation answers",
+       lookup_parameters(), kTilesetMedia, Lane::kPoint, Reserves::kQuarter, answer_lookup,
+       refuse_elevation},
   };
   std::string unread;
   for (Endpoint& endpoint : all) {
