@@ -197,6 +197,10 @@ StartedPtin::~StartedPtin() {
   status_of(process_);
 }
 
+std::string StartedPtin::err() const { return read_file(folder_.file("err")); }
+
+void StartedPtin::send(int signal) const { ::kill(process_, signal); }
+
 std::string StartedPtin::out_with(const std::string& text) const {
   return await_output(process_, folder_, text);
 }

@@ -53,6 +53,9 @@ class StartedPtin {
   /// Waits until its standard output holds a text, or it has ended. @return The output.
   [[nodiscard]] std::string out_with(const std::string& text) const;
   [[nodiscard]] pid_t process() const noexcept { return process_; }
+  /// Its standard error so far.
+  [[nodiscard]] std::string err() const;
+  void send(int signal) const;
 
  private:
   TestFolder folder_;

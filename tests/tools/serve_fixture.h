@@ -50,6 +50,7 @@ class ServedTerrains {
     return client_.ask(method, target, headers, body);
   }
   [[nodiscard]] const std::string& address() const { return running_.address(); }
+  [[nodiscard]] serve::TerrainService& service() { return service_; }
   /// The lines of the log so far, as one text.
   [[nodiscard]] std::string log() const {
     const std::lock_guard lock(mutex_);

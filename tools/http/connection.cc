@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <string_view>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/read_size.hpp>
 #include <boost/beast/core/string.hpp>
@@ -46,7 +48,7 @@ std::string lower(std::string_view text) {
 
 }  // namespace
 
-Connection::Connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host,
+Connection::Connection(boost::asio::generic::stream_protocol::socket socket, ConnectionHost& host,
                        std::function<void(Connection*)> closed)
     : socket_(std::move(socket)),
       host_(host),
@@ -56,7 +58,11 @@ Connection::Connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host
       buffer_(host.limits.request_line_bytes + host.limits.header_bytes + kPieceBytes) {
   Status status;
   const auto end = socket_.remote_endpoint(status);
-  if (!status) peer_ = end.address();
+  if (!status && (end.data()->sa_family == AF_INET || end.data()->sa_family == AF_INET6)) {
+    boost::asio::ip::tcp::endpoint of_ip;
+    std::memcpy(of_ip.data(), end.data(), std::min(end.size(), of_ip.capacity()));
+    peer_ = of_ip.address();
+  }
   peer_share_ = share_of(peer_);
   is_of_proxy_ = is_in(host_.limits.trusted_proxies, peer_);
 }
@@ -95,7 +101,7 @@ std::optional<Connection::Clock::time_point> Connection::waits_since() const {
 /// One wait at once, whatever it is for by the time that it ends.
 void Connection::wait_for_bytes() {
   if (awaits_bytes_) return;
-  socket_.async_wait(boost::asio::ip::tcp::socket::wait_read,
+  socket_.async_wait(boost::asio::socket_base::wait_read,
                      [self = shared_from_this()](const Status& status) {
                        self->awaits_bytes_ = false;
                        if (status) return self->close();
@@ -248,7 +254,7 @@ std::shared_ptr<Request> Connection::request_of_head() {
   }
   if (is_of_proxy_) request->forwarded = forwarded_of(request->headers);
   const auto client = client_of(peer_, request->forwarded.client, host_.limits.trusted_proxies);
-  request->remote = client.to_string();
+  request->remote = client.is_unspecified() ? "unix" : client.to_string();
   request->share = share_of(client);
   request->is_secure = request->forwarded.proto == "https";
   stop_ = std::stop_source();

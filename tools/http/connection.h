@@ -13,7 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -50,7 +51,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Clock = std::chrono::steady_clock;
 
   /// @param closed  Called once, on the executor's thread, when the connection is over.
-  Connection(boost::asio::ip::tcp::socket socket, ConnectionHost& host,
+  Connection(boost::asio::generic::stream_protocol::socket socket, ConnectionHost& host,
              std::function<void(Connection*)> closed);
   ~Connection();
   Connection(const Connection&) = delete;
@@ -133,7 +134,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void withdraw_ticket();
   void close();
 
-  boost::asio::ip::tcp::socket socket_;
+  boost::asio::generic::stream_protocol::socket socket_;
   ConnectionHost& host_;
   std::function<void(Connection*)> closed_;
   boost::asio::ip::address peer_;

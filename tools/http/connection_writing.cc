@@ -70,7 +70,7 @@ void Connection::write_more() {
 /// A piece is read when the socket takes some of it, so that no memory is held for clients that do
 /// not read.
 void Connection::wait_for_room() {
-  socket_.async_wait(boost::asio::ip::tcp::socket::wait_write,
+  socket_.async_wait(boost::asio::socket_base::wait_write,
                      [self = shared_from_this()](const Status& status) {
                        if (self->state_ != State::kWriting) return;
                        if (status) return self->end_of_answer(false);
@@ -143,7 +143,7 @@ void Connection::linger() {
   state_ = State::kLingering;
   waits_since_ = Clock::now();
   Status ignored;
-  socket_.shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  socket_.shutdown(boost::asio::socket_base::shutdown_send, ignored);
   set_deadline(kLinger, [this] { close(); });
   dropped_ = 0;
   buffer_.consume(buffer_.size());

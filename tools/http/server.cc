@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cstdint>
 #include <new>
 #include <string>
@@ -19,6 +18,7 @@
 #include "engine/error.h"
 #include "tools/http/admission.h"
 #include "tools/http/connection.h"
+#include "tools/http/listener.h"
 #include "tools/http/turns.h"
 
 namespace ptin::http {
@@ -26,6 +26,7 @@ namespace ptin::http {
 namespace {
 
 using boost::asio::ip::tcp;
+using Socket = Listener::Protocol::socket;
 using Status = boost::system::error_code;
 
 /// How long nothing is accepted after the system refused a connection, and none could be closed.
@@ -55,46 +56,25 @@ Admission::Sizes sizes_of(const Limits& limits) {
   return {limits.threads, limits.waiting, parts_of(limits)};
 }
 
-tcp::endpoint endpoint_of(const std::string& address) {
-  const std::size_t colon = address.rfind(':');
-  const char* const wanted = "; expected ADDRESS:PORT, as in 127.0.0.1:8080 or [::1]:8080";
-  if (colon == std::string::npos) refuse("the address has no port" + std::string(wanted), address);
-  std::string host = address.substr(0, colon);
-  if (host.size() > 1 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  }
-  if (host == "localhost") host = "127.0.0.1";
-  std::uint16_t port = 0;
-  const char* const end = address.data() + address.size();
-  const auto [stopped, bad_port] = std::from_chars(address.data() + colon + 1, end, port);
-  Status status;
-  const auto ip = boost::asio::ip::make_address(host, status);
-  if (status || bad_port != std::errc() || stopped != end) {
-    refuse("not an address to listen on" + std::string(wanted), address);
-  }
-  return {ip, port};
+/// Whoever may open a socket of the file system is trusted as a proxy: such a client has the address 0.0.0.0.
+Limits with_local_proxy(Limits limits, bool is_local) {
+  if (is_local) limits.trusted_proxies.push_back({boost::asio::ip::address_v4(), 32});
+  return limits;
 }
 
 }  // namespace
 
 struct Server::Inside {
   Inside(const std::string& address, const Limits& limits_given, Service& service)
-      : limits(limits_given),
+      : limits(with_local_proxy(limits_given, Listener::is_local(address))),
         host{limits, service, admission, turns},
         turns(io.get_executor()),
-        acceptor(io),
+        listener(io, address),
         pause(io),
+        until_end(io),
         admission(
             sizes_of(limits), [&service] { service.rest(); },
-            [&service] { service.bound_freed_memory(); }) {
-    const tcp::endpoint endpoint = endpoint_of(address);
-    Status status;
-    acceptor.open(endpoint.protocol(), status);
-    if (!status) acceptor.set_option(tcp::acceptor::reuse_address(true), status);
-    if (!status) acceptor.bind(endpoint, status);
-    if (!status) acceptor.listen(boost::asio::socket_base::max_listen_connections, status);
-    if (status) throw system_error(status.value(), "cannot listen on", address);
-  }
+            [&service] { service.bound_freed_memory(); }) {}
 
   ~Inside() {
     for (const auto& connection : all()) connection->abort();
@@ -103,8 +83,8 @@ struct Server::Inside {
   Inside& operator=(const Inside&) = delete;
 
   void accept() {
-    acceptor.async_accept([this](const Status& status, tcp::socket socket) {
-      if (!acceptor.is_open()) return;
+    listener.acceptor().async_accept([this](const Status& status, Socket socket) {
+      if (!listener.acceptor().is_open()) return;
       if (status) {
         // A new connection without a descriptor gets that of one who waits for nothing.
         if (close_a_waiting_one([](const Connection&) { return true; })) return accept();
@@ -123,7 +103,7 @@ struct Server::Inside {
     });
   }
 
-  void take(tcp::socket socket) {
+  void take(Socket socket) {
     Status ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const auto made =
@@ -199,8 +179,7 @@ struct Server::Inside {
 
   void end() {
     host.drains = is_ending = true;
-    Status ignored;
-    acceptor.close(ignored);
+    listener.close();
     for (const auto& connection : all()) connection->finish();
     if (connections.empty()) return io.stop();
     until_end.expires_after(limits.queueing + limits.computing + limits.writing);
@@ -231,9 +210,8 @@ struct Server::Inside {
   ConnectionHost host;
   boost::asio::io_context io{1};
   Turns turns;  // Those that wait in it are connections, whose sockets are the context's.
-  tcp::acceptor acceptor;
-  boost::asio::steady_timer pause;
-  boost::asio::steady_timer until_end{io};
+  Listener listener;
+  boost::asio::steady_timer pause, until_end;
   Admission admission;
 };
 
@@ -242,11 +220,7 @@ Server::Server(const std::string& address, const Limits& limits, Service& servic
 
 Server::~Server() = default;
 
-std::string Server::address() const {
-  const tcp::endpoint end = inside_->acceptor.local_endpoint();
-  const std::string host = end.address().to_string();
-  return (end.address().is_v6() ? "[" + host + "]" : host) + ":" + std::to_string(end.port());
-}
+std::string Server::address() const { return inside_->listener.address(); }
 
 void Server::run() {
   inside_->accept();

@@ -23,9 +23,8 @@ struct ServerLoad {
 class Server {
  public:
   /// Listens from here on; run() answers.
-  /// @param address  "127.0.0.1:8080", "[::1]:8080"; port 0 lets the system choose one.
-  /// @throws Error invalid_argument  no such address
-  ///               io_error          the system refuses it; names the address
+  /// @param address  As Listener takes it: "127.0.0.1:8080", "[::1]:8080", "unix:/run/ptin.sock".
+  /// @throws Error as Listener
   Server(const std::string& address, const Limits& limits, Service& service);
   ~Server();
   Server(const Server&) = delete;

@@ -23,6 +23,7 @@
 #include "tools/http/server.h"
 #include "tools/kept_memory.h"
 #include "tools/ptin/query_options.h"
+#include "tools/ptin/stop_on_signals.h"
 #include "tools/serve/config_file.h"
 #include "tools/serve/limit_table.h"
 #include "tools/serve/log_writer.h"
@@ -128,15 +129,19 @@ int run_serve(const ServeCommand& command, const Context& context) {
   http::Server server(options.listen, options.http, service);
   service.watch(&server);
   if (!context.quiet) {
-    std::printf("http://%s/ answers from %zu file%s; SIGTERM ends it\n%s\n",
-                server.address().c_str(), options.files.size(),
-                options.files.size() == 1 ? "" : "s", sizes_text(options).c_str());
+    const std::string address = server.address();
+    const std::string shown = address.starts_with("unix:") ? address : "http://" + address + "/";
+    std::printf("%s answers from %zu file%s; SIGTERM ends it\n%s\n", shown.c_str(),
+                options.files.size(), options.files.size() == 1 ? "" : "s",
+                sizes_text(options).c_str());
     std::fflush(stdout);
   }
   const std::stop_callback drains(context.stop, [&] {
     service.begin_to_drain();
     server.drain();
   });
+  // Collections alone: what else a configuration says counts from the next start on.
+  const OnHangUp reloads([&] { service.reload([&] { return options_of(command).files; }); });
   server.run();
   service.watch(nullptr);
   return kExitDone;
@@ -157,7 +162,9 @@ void add_question(ask::Parameters& rows, ServeCommand& command) {
   rows.add("file", &command.files, "FILE...", "Files, each as FILE or NAME=FILE")
       .spelled("FILE")
       .values(1, ask::kAnyNumberOfValues);
-  rows.add("listen", &command.listen, "ADDRESS:PORT", "Where to listen; 127.0.0.1:8080 without it");
+  rows.add(
+      "listen", &command.listen, "ADDRESS:PORT",
+      "Where to listen; 127.0.0.1:8080 without it; or a socket, unix:/PATH, unix:/PATH,mode=660");
   rows.add("public-url", &command.public_url, "URL",
            "The address under which clients know the service, as https://example.org/terrain/: "
            "addresses in answers begin with it");

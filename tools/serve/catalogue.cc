@@ -82,7 +82,13 @@ Collection::Collection(std::string name, const std::string& path)
   lon_lat = lon_lat_of(bounds, crs);
 }
 
-Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn) : warn_(std::move(warn)) {
+Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn)
+    : warn_(std::move(warn)),
+      entries_(std::make_shared<const Entries>(opened_entries(files, {}))) {}
+
+Catalogue::Entries Catalogue::opened_entries(const std::vector<ServedFile>& files,
+                                             const Entries& known) {
+  Entries entries;
   for (const ServedFile& file : files) {
     if (!is_name(file.id)) {
       refuse("\"" + file.id +
@@ -90,39 +96,56 @@ Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn) : warn_(st
                  "as NAME=FILE",
              file.path);
     }
-    auto entry = std::make_unique<Entry>();
-    entry->path = file.path;
-    entry->open = std::make_shared<Collection>(file.id, file.path);
-    if (!entries_.emplace(file.id, std::move(entry)).second) {
+    const auto before = known.find(file.id);
+    std::shared_ptr<Entry> entry;
+    if (before != known.end() && before->second->path == file.path) {
+      entry = before->second;
+    } else {
+      entry = std::make_shared<Entry>();
+      entry->path = file.path;
+      entry->open = std::make_shared<Collection>(file.id, file.path);
+    }
+    if (!entries.emplace(file.id, std::move(entry)).second) {
       refuse("two files have the name \"" + file.id + "\"; give another one as NAME=FILE",
              file.path);
     }
   }
+  return entries;
+}
+
+void Catalogue::replace(const std::vector<ServedFile>& files) {
+  auto made = std::make_shared<const Entries>(opened_entries(files, *entries()));
+  const std::scoped_lock lock(mutex_);
+  entries_ = std::move(made);
 }
 
 std::shared_ptr<const Collection> Catalogue::find(const std::string& id) const {
-  const auto found = entries_.find(id);
-  return found == entries_.end() ? nullptr : current(id, *found->second);
+  const auto known = entries();
+  const auto found = known->find(id);
+  return found == known->end() ? nullptr : current(id, *found->second);
 }
 
 std::vector<std::string> Catalogue::damaged() const {
   std::vector<std::string> names;
-  for (const auto& [id, entry] : entries_) {
+  const auto known = entries();
+  for (const auto& [id, entry] : *known) {
     if (entry->is_damaged || entry->has_bad_pages) names.push_back(id);
   }
   return names;
 }
 
 void Catalogue::note_damage(const Collection& collection) const {
-  const auto found = entries_.find(collection.id);
-  if (found == entries_.end()) return;
+  const auto known = entries();
+  const auto found = known->find(collection.id);
+  if (found == known->end()) return;
   const std::lock_guard lock(found->second->mutex);
   if (found->second->open.get() == &collection) found->second->has_bad_pages = true;
 }
 
 void Catalogue::check_whole(const std::string& id) const {
-  const auto found = entries_.find(id);
-  if (found == entries_.end()) return;
+  const auto known = entries();
+  const auto found = known->find(id);
+  if (found == known->end()) return;
   if (!found->second->is_damaged && !found->second->has_bad_pages) return;
   throw Error(ErrorCode::corruption, "the file was written over while it was served",
               found->second->path);
@@ -130,7 +153,8 @@ void Catalogue::check_whole(const std::string& id) const {
 
 std::vector<std::shared_ptr<const Collection>> Catalogue::all() const {
   std::vector<std::shared_ptr<const Collection>> all;
-  for (const auto& [id, entry] : entries_) all.push_back(current(id, *entry));
+  const auto known = entries();
+  for (const auto& [id, entry] : *known) all.push_back(current(id, *entry));
   return all;
 }
 

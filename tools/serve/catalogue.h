@@ -68,11 +68,16 @@ class Catalogue {
   ///               as Terrain::open
   Catalogue(const std::vector<ServedFile>& files, Warn warn);
 
+  /// Puts these files in the place of all: of a name that has the same path as before nothing is opened.
+  /// Questions in flight end on what they began with.
+  /// @throws Error as the constructor; all is then as before
+  void replace(const std::vector<ServedFile>& files);
+
   /// The collection of this name, null when there is none. Looks whether the file was replaced, and
   /// then opens the new one; while that one cannot be opened, the old one goes on answering.
   [[nodiscard]] std::shared_ptr<const Collection> find(const std::string& id) const;
   /// Whether there is one of this name; nothing is opened, and no file is looked at.
-  [[nodiscard]] bool has(const std::string& id) const { return entries_.count(id) != 0; }
+  [[nodiscard]] bool has(const std::string& id) const { return entries()->count(id) != 0; }
   /// A question met a page that is damaged: known until another file takes the place of this one.
   void note_damage(const Collection& collection) const;
   /// Those whose open file was written over in place and is no terrain any more, or has pages that are
@@ -98,8 +103,18 @@ class Catalogue {
   [[nodiscard]] std::shared_ptr<const Collection> current(const std::string& id,
                                                           Entry& entry) const;
 
+  using Entries = std::map<std::string, std::shared_ptr<Entry>>;
+  [[nodiscard]] static Entries opened_entries(const std::vector<ServedFile>& files,
+                                              const Entries& known);
+  /// Those of this moment.
+  [[nodiscard]] std::shared_ptr<const Entries> entries() const {
+    const std::scoped_lock lock(mutex_);
+    return entries_;
+  }
+
   Warn warn_;
-  std::map<std::string, std::unique_ptr<Entry>> entries_;
+  mutable std::mutex mutex_;  ///< Of the pointer.
+  std::shared_ptr<const Entries> entries_;
 };
 
 /// The identity of the file at a path; none: there is no file.

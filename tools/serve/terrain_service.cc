@@ -475,6 +475,18 @@ void TerrainService::note(const http::Served& served) noexcept {
   }
 }
 
+void TerrainService::reload(const std::function<std::vector<ServedFile>()>& files) {
+  nlohmann::ordered_json line = {{"time", now_text()}, {"event", "reload"}};
+  try {
+    catalogue_.replace(files());
+    line["collections"] = nlohmann::ordered_json::array();
+    for (const auto& collection : catalogue_.all()) line["collections"].push_back(collection->id);
+  } catch (const std::exception& error) {
+    line["refused"] = error.what();
+  }
+  log(line);
+}
+
 void TerrainService::log(const nlohmann::ordered_json& line) const noexcept {
   try {
     log_(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

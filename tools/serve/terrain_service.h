@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "tools/http/metrics.h"
 #include "tools/http/server.h"
@@ -43,6 +44,10 @@ class TerrainService : public http::Service {
 
   /// What load() is asked of; null while there is none.
   void watch(const http::Server* server) noexcept { server_ = server; }
+  /// Answers from these files from now on, and writes a line of the log that says so; where they cannot be had
+  /// all is as before, and the line says why. Threads: any, one at once.
+  /// @param files  May throw Error: the configuration is broken.
+  void reload(const std::function<std::vector<ServedFile>()>& files);
   /// From now on /readyz says no, so that a balancer sends nobody here.
   void begin_to_drain() noexcept { drains_ = true; }
 
