@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "engine/error.h"
 #include "engine/memory_units.h"
 #include "tools/export/pixel_grid.h"
+#include "tools/formats/number_text.h"
 
 namespace ptin::tools {
 
@@ -51,6 +53,24 @@ struct Rounding {
   }
 };
 
+/// The sum of two bounds, rounded up.
+double sum_above(double a, double b) {
+  return a == 0 || b == 0 ? a + b : std::nextafter(a + b, HUGE_VAL);
+}
+
+std::string number_text(double value) {
+  if (!std::isfinite(value)) return "inf";
+  std::string text;
+  append_number(text, value);
+  return text;
+}
+
+void describe(RasterFile& file, const WrittenRaster& written) {
+  file.describe("PTIN_CERTIFIED_ERROR", number_text(written.certified_error));
+  file.describe("PTIN_CERTIFIED_DEVIATION", number_text(written.certified_deviation));
+  file.describe("PTIN_EXACT", written.exact ? "true" : "false");
+}
+
 /// Fills a raster block by block.
 class RasterWriter {
  public:
@@ -77,7 +97,12 @@ class RasterWriter {
   WrittenRaster run() {
     const RasterResult result =
         terrain_.raster(request_, [this](const RasterBlock& block) { write(block); });
-    return {rounding_, result.surface_pixels};
+    return {rounding_,
+            result.surface_pixels,
+            sum_above(result.certified_error, rounding_),
+            sum_above(result.certified_deviation, rounding_),
+            result.exact && rounding_ == 0,
+            result.cost};
   }
 
  private:
@@ -185,6 +210,7 @@ WrittenRaster export_raster(const Terrain& terrain, RasterRequest request,
     if (progress) progress(done * share);
   };
   const WrittenRaster written = RasterWriter(terrain, request, target, file).run();
+  if (target.is_described) describe(file, written);
   file.publish(progress, request.limits.stop);
   return written;
 }

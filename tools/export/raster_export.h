@@ -17,6 +17,10 @@ struct WrittenRaster {
   /// vertices; 0 of what is no height.
   double rounding = 0.0;
   std::uint64_t surface_pixels = 0;  ///< Pixels whose centre lies on surface.
+  /// Bounds of what the pixels are from the source's, as RasterResult has them, the rounding included.
+  double certified_error = 0.0, certified_deviation = 0.0;
+  bool exact = false;  ///< Nothing was left out, and nothing rounded.
+  QueryCost cost;
 };
 
 /// Samples the terrain as `request` says and writes what `target.content` names, in pixels of

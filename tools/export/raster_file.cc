@@ -77,13 +77,13 @@ void check_creation_options(GDALDriver* driver, const CPLStringList& options,
   }
 }
 
-GDALDatasetUniquePtr create(const PendingFile& file, const RasterForm& form,
+GDALDatasetUniquePtr create(const std::string& path, const RasterForm& form,
                             const RasterTarget& target) {
   GDALDriver& driver = driver_named("GTiff");
   const CPLStringList options = options_of(target, form, false);
   check_creation_options(&driver, options, target.path);
   CPLErrorReset();
-  GDALDatasetUniquePtr dataset(driver.Create(file.temporary().c_str(), static_cast<int>(form.width),
+  GDALDatasetUniquePtr dataset(driver.Create(path.c_str(), static_cast<int>(form.width),
                                              static_cast<int>(form.height), 1, form.type,
                                              const_cast<char**>(options.List())));
   if (!dataset) throw gdal_failure("cannot create the raster", target.path);
@@ -124,15 +124,15 @@ struct CopyProgress {
   }
 };
 
-void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterForm& form,
+void copy_as_cog(const std::string& raw, const std::string& copied_to, const RasterForm& form,
                  const RasterTarget& target, CopyProgress& progress) {
   GDALDriver& driver = driver_named("COG");
   CPLErrorReset();
-  const GDALDatasetUniquePtr source(GDALDataset::Open(raw.temporary().c_str(), GDAL_OF_RASTER));
+  const GDALDatasetUniquePtr source(GDALDataset::Open(raw.c_str(), GDAL_OF_RASTER));
   if (!source) throw gdal_failure("cannot read the raster back", target.path);
   const CPLStringList options = options_of(target, form, true);
   check_creation_options(&driver, options, target.path);
-  GDALDatasetUniquePtr copy(driver.CreateCopy(file.temporary().c_str(), source.get(), FALSE,
+  GDALDatasetUniquePtr copy(driver.CreateCopy(copied_to.c_str(), source.get(), FALSE,
                                               const_cast<char**>(options.List()),
                                               &CopyProgress::tell, &progress));
   stop_if_asked(progress.stop, "the export", target.path);
@@ -144,12 +144,31 @@ void copy_as_cog(const PendingFile& raw, const PendingFile& file, const RasterFo
 }  // namespace
 
 RasterFile::RasterFile(const RasterTarget& target, const RasterForm& form)
-    : target_(target),
-      form_((check_table(form, target), form)),
-      cache_(target.cache_bytes),
-      file_(target.path, target.overwrite) {
-  if (target.is_cog) raw_.emplace(target.path + ".raw.tif", true);
-  dataset_ = create(raw_ ? *raw_ : file_, form, target);
+    : target_(target), form_((check_table(form, target), form)) {
+  if (target.path.starts_with("/vsimem/")) {
+    written_ = target.path;
+    if (target.is_cog) copied_ = target.path + ".raw.tif";
+  } else {
+    cache_.emplace(target.cache_bytes);
+    file_.emplace(target.path, target.overwrite);
+    written_ = file_->temporary();
+    if (target.is_cog) copied_ = raw_.emplace(target.path + ".raw.tif", true).temporary();
+  }
+  dataset_ = create(target.is_cog ? copied_ : written_, form, target);
+  for (const auto& [name, value] : target.metadata) describe(name, value);
+}
+
+RasterFile::~RasterFile() {
+  dataset_.reset();
+  if (file_) return;
+  for (const std::string& path : {written_, copied_}) {
+    if (!path.empty()) VSIUnlink(path.c_str());
+  }
+}
+
+void RasterFile::describe(const std::string& name, const std::string& value) {
+  require_done(dataset_->SetMetadataItem(name.c_str(), value.c_str()), "cannot describe the raster",
+               target_.path);
 }
 
 void RasterFile::write_block(int column, int row, void* values) {
@@ -161,11 +180,14 @@ void RasterFile::write_block(int column, int row, void* values) {
 
 void RasterFile::publish(const std::function<void(double)>& progress, const std::stop_token& stop) {
   close_checked(dataset_, target_.path);
-  if (raw_) {
+  if (!copied_.empty()) {
     CopyProgress copying{progress, stop};
-    copy_as_cog(*raw_, file_, form_, target_, copying);
+    copy_as_cog(copied_, written_, form_, target_, copying);
   }
-  file_.publish();
+  if (file_) return file_->publish();
+  if (!copied_.empty()) VSIUnlink(copied_.c_str());
+  written_.clear();  // It is the caller's now.
+  copied_.clear();
 }
 
 }  // namespace ptin::tools

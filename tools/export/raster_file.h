@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gdal_priv.h>
@@ -24,6 +25,8 @@ namespace ptin::tools {
 inline constexpr const char* kBlockSide = "512";
 
 struct RasterTarget {
+  /// Or "/vsimem/NAME": a file of GDAL's in memory, which the caller removes once it is published. Then GDAL's
+  /// cache stays as it is.
   std::string path;
   bool overwrite = false;
   bool is_cog = false;
@@ -36,6 +39,10 @@ struct RasterTarget {
   std::uint64_t table_bytes = std::uint64_t{64} << 20;  ///< For GDAL's table of blocks.
   /// Of heights: the type of pixels; none: type_of_pixels().
   std::optional<GDALDataType> type = std::nullopt;
+  /// Metadata of the file: names that GDAL writes as tags (TIFFTAG_COPYRIGHT), and others. Of what is known only
+  /// when it was sampled, export_raster() adds PTIN_CERTIFIED_ERROR, PTIN_CERTIFIED_DEVIATION and PTIN_EXACT.
+  bool is_described = false;
+  std::vector<std::pair<std::string, std::string>> metadata{};
 };
 
 /// What a raster is, beside the values of its pixels.
@@ -60,7 +67,12 @@ class RasterFile {
   ///                resource_exhausted  the table of blocks does not fit `table_bytes`
   ///                io_error
   RasterFile(const RasterTarget& target, const RasterForm& form);
+  ~RasterFile();
+  RasterFile(const RasterFile&) = delete;
+  RasterFile& operator=(const RasterFile&) = delete;
 
+  /// Adds an item of metadata.  @throws Error io_error
+  void describe(const std::string& name, const std::string& value);
   [[nodiscard]] GDALRasterBand& band() { return *dataset_->GetRasterBand(1); }
   /// @param values  A whole block, of the type of the form.
   /// @throws Error  io_error; resource_exhausted  the disk is full
@@ -72,10 +84,11 @@ class RasterFile {
  private:
   const RasterTarget& target_;
   RasterForm form_;
-  GdalCacheLimit cache_;
-  PendingFile file_;
-  std::optional<PendingFile> raw_;  ///< What a COG is copied from.
-  GDALDatasetUniquePtr dataset_;    ///< Closed before the files are removed.
+  std::optional<GdalCacheLimit> cache_;
+  std::optional<PendingFile> file_;  ///< None: in memory.
+  std::optional<PendingFile> raw_;   ///< What a COG is copied from.
+  std::string written_, copied_;     ///< Their names; empty: there is none.
+  GDALDatasetUniquePtr dataset_;     ///< Closed before the files are removed.
 };
 
 }  // namespace ptin::tools

@@ -100,7 +100,7 @@ Json schema_of(std::span<const ask::Field> fields) {
 }
 
 /// The schema of an answer; empty: only the type of its body is told.
-Json answer_schema(const Endpoint& endpoint, std::string_view media) {
+Json schema_of_answer(const Endpoint& endpoint, std::string_view media) {
   const bool is_collection = media == kGeoJson;
   if ((endpoint.members.empty() && endpoint.properties.empty()) ||
       (!is_collection && media != kJson)) {
@@ -132,7 +132,7 @@ Json responses_of(const Endpoint& endpoint) {
   for (const ask::Format& format : endpoint.formats) {
     const std::string_view media = format.media.substr(0, format.media.find("; charset"));
     Json& of_media = content[std::string(media)] = Json::object();
-    if (Json schema = answer_schema(endpoint, media); !schema.empty()) {
+    if (Json schema = schema_of_answer(endpoint, media); !schema.empty()) {
       of_media["schema"] = std::move(schema);
     }
   }

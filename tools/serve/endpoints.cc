@@ -26,6 +26,8 @@ constexpr std::array kHeightFormats{kCoverageFormat, kGeoJsonFormat, kCsvFormat}
 constexpr std::array kProfileFormats{kJsonFormat, kGeoJsonFormat, kCsvFormat};
 constexpr std::array kFeatureFormats{kGeoJsonFormat};
 constexpr std::array kViewshedFormats{ask::Format{"png", "image/png"}, kGeoJsonFormat};
+constexpr std::array kRasterFormats{ask::Format{"geotiff", "image/tiff; application=geotiff"},
+                                    ask::Format{"cog", "image/tiff; application=geotiff"}};
 constexpr std::array kMeshFormats{ask::Format{"glb", "model/gltf-binary"},
                                   ask::Format{"ply", "application/x-ply"}};
 // Of these no parameter `f` chooses.
@@ -34,6 +36,7 @@ constexpr std::array kViewerMedia{ask::Format{"", "text/html"}, ask::Format{"", 
 constexpr std::array kStreamMedia{ask::Format{"", "application/vnd.ptin.stream"}};
 constexpr std::array kTileMedia{ask::Format{"", "application/vnd.quantized-mesh"},
                                 ask::Format{"", kJson}};
+constexpr std::array kSchemaMedia{ask::Format{"", "application/schema+json"}};
 constexpr std::array kTilesetMedia{ask::Format{"", kJson}};
 constexpr std::array kSubtreeMedia{ask::Format{"", "application/octet-stream"}};
 constexpr std::array kContentMedia{ask::Format{"", "model/gltf-binary"}};
@@ -97,6 +100,11 @@ std::vector<Endpoint> made_table() {
        answer_trajectory},
       {"/collections/{id}/area", "area", true, "Heights on a grid within a polygon",
        area_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_area},
+      {"/collections/{id}/coverage", "coverage", false,
+       "Heights of a window as a GeoTIFF, or cloud-optimized", raster_parameters(), kRasterFormats,
+       Lane::kSweep, Reserves::kAll, answer_raster},
+      {"/collections/{id}/schema", "schema", false, "The values of the coverage, as JSON Schema",
+       none, kSchemaMedia, Lane::kPoint, Reserves::kNothing, answer_schema},
       {"/collections/{id}/mesh", "mesh", false, "A mesh of a window", mesh_parameters(),
        kMeshFormats, Lane::kSweep, Reserves::kAll, answer_mesh},
       {"/collections/{id}/isolines", "isolines", false, "Isolines of a window",

@@ -18,6 +18,9 @@ namespace {
 constexpr std::array kStandards = {
     "http://www.opengis.net/spec/ogcapi-common-1/1.0/conf/core",
     "http://www.opengis.net/spec/ogcapi-common-2/1.0/conf/collections",
+    // Of the draft: the coverage at /coverage, whole or by bbox, as GeoTIFF.
+    "http://www.opengis.net/spec/ogcapi-coverages-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-coverages-1/1.0/conf/geotiff",
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/core",
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/covjson",
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/geojson"};
@@ -51,6 +54,10 @@ Json collection_json(const Collection& c, const std::string& root) {
   Json json = {{"id", c.id},
                {"links",
                 {link(base, "self", kJson, "this document"),
+                 link(base + "/coverage", "http://www.opengis.net/def/rel/ogc/1.0/coverage",
+                      "image/tiff; application=geotiff", "heights as GeoTIFF"),
+                 link(base + "/schema", "http://www.opengis.net/def/rel/ogc/1.0/schema",
+                      "application/schema+json", "the values of the coverage"),
                  link(base + "/stream", "item", "application/vnd.ptin.stream",
                       "progressive transmission")}}};
   add_credits(json, c.credits);

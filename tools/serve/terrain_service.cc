@@ -433,10 +433,11 @@ void TerrainService::finish(const Request& request, Response& response) {
   }
   if (!options_.cors_origin.empty()) {
     response.add("Access-Control-Allow-Origin", options_.cors_origin);
-    response.add("Access-Control-Expose-Headers",
-                 "ETag, Server-Timing, Ptin-Certified-Error, Ptin-Exact, Ptin-Bounds, "
-                 "Ptin-Fingerprint, Ptin-Splits, Ptin-Vertices, Ptin-Triangles, Content-Range, "
-                 "Retry-After");
+    response.add(
+        "Access-Control-Expose-Headers",
+        "ETag, Server-Timing, Ptin-Certified-Error, Ptin-Exact, Ptin-Bounds, "
+        "Ptin-Fingerprint, Ptin-Splits, Ptin-Vertices, Ptin-Triangles, Content-Crs, Content-Range, "
+        "Retry-After");
   }
   response.add("X-Content-Type-Options", "nosniff");
 }
