@@ -17,6 +17,7 @@
 #include "engine/error.h"
 #include "engine/query/questions.h"
 #include "tools/ask/questions.h"
+#include "tools/ask/volume_terms.h"
 #include "tools/error_status.h"
 #include "tools/facts/answers.h"
 #include "tools/facts/human.h"
@@ -51,9 +52,7 @@ bool knows_height_unit(const CrsFacts& crs) { return crs.vertical_unit != "unkno
 /// that of the other one.
 double height_scale(CrsFacts& file, const CrsFacts& other, const VolumeOptions& options,
                     const Context& context) {
-  if (knows_height_unit(file) && knows_height_unit(other)) {
-    return ground_of(other).metres_per_height / ground_of(file).metres_per_height;
-  }
+  if (const std::optional<double> known = ask::height_scale(file, other)) return *known;
   if (knows_height_unit(file) != knows_height_unit(other)) {
     warn("nothing tells the unit of the heights of " +
              (knows_height_unit(file) ? options.question.against : options.terrain.file) +
@@ -67,22 +66,8 @@ double height_scale(CrsFacts& file, const CrsFacts& other, const VolumeOptions& 
 /// @throws Error invalid_argument  positions or heights of the two cannot be compared
 void check_comparable(const CrsFacts& file, const CrsFacts& other, const VolumeOptions& options,
                       const Context& context) {
-  if (!is_same_plane(file, other)) {
-    throw Error(ErrorCode::invalid_argument,
-                "its CRS (" + (other.name.empty() ? other.horizontal_unit : other.name) +
-                    ") is not that of " + options.terrain.file + " (" +
-                    (file.name.empty() ? file.horizontal_unit : file.name) +
-                    "); transform the source of one and build it again",
-                options.question.against);
-  }
-  if (!file.vertical_name.empty() && !other.vertical_name.empty() &&
-      file.vertical_text() != other.vertical_text()) {
-    throw Error(ErrorCode::invalid_argument,
-                "its heights (" + other.vertical_name + ") do not count from where those of " +
-                    options.terrain.file + " (" + file.vertical_name +
-                    ") do; transform the source of one and build it again",
-                options.question.against);
-  }
+  const std::string mismatch = ask::mismatch_of(file, other, options.terrain.file);
+  if (!mismatch.empty()) refuse(mismatch, options.question.against);
   if (file.wkt.empty() != other.wkt.empty()) {
     warn("the CRS of " + (file.wkt.empty() ? options.terrain.file : options.question.against) +
              " is unknown; taken to be that of the other terrain",
@@ -95,14 +80,7 @@ VolumeRequest request_of(const VolumeOptions& options, const CrsFacts& crs,
   VolumeRequest request;
   request.region = region;
   request.detail = options.question.detail;
-  const Ground ground = ground_of(crs);
-  request.ground = {ground.per_map_unit, !ground.geographic};
-  // Borders move by metres where map units are degrees, and by map units elsewhere.
-  const double ground_per_move =
-      ground.geographic ? 1 / ground.metres_per_height : ground.per_map_unit({0, 0}).x;
-  request.border_move = [ground_per_move](const StoreFile& store, double certified_error) {
-    return ground_per_move * border_moved_at_most(store, certified_error);
-  };
+  ask::set_ground(request, crs);
   request.limits = limits_of(options.memory, context);
   request.threads = thread_count(options.threads);
   return request;

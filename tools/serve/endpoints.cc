@@ -68,6 +68,7 @@ void add_all_fields(std::vector<Endpoint>& all) {
   add_fields(all, "position", ask::located_fields(), Told::kDocument, "points[].");
   add_fields(all, "profile", ask::profile_fields(), Told::kDocument, "points[].");
   add_fields(all, "profile", ask::profile_answer_fields(), Told::kDocument);
+  add_fields(all, "volume", ask::volume_fields(), Told::kDocument);
   add_fields(all, "sight", ask::sight_fields(), Told::kDocument, "pairs[].");
   add_fields(all, "isolines", ask::isoline_row_fields(), Told::kFeature);
   add_fields(all, "highest", ask::highest_place_fields(), Told::kFeature);
@@ -121,6 +122,9 @@ std::vector<Endpoint> made_table() {
        kProfileFormats, Lane::kTile, Reserves::kQuarter, answer_profile},
       {"/collections/{id}/sight", "sight", true, "Lines of sight, visible or hidden",
        described<ask::SightQuestion>(), kPageFormats, Lane::kSweep, Reserves::kAll, answer_sight},
+      {"/collections/{id}/volume", "volume", true,
+       "Cut and fill against a height or another collection", volume_parameters(), kPageFormats,
+       Lane::kSweep, Reserves::kAll, answer_volume},
       {"/collections/{id}/stream", "stream", true,
        "Progressive transmission: what matters most, then what a client lacks", stream_parameters(),
        kStreamMedia, Lane::kSweep, Reserves::kAll, answer_stream},

@@ -17,8 +17,8 @@ using Answer = http::Response(const Asked& asked);
 
 Answer answer_position, answer_trajectory, answer_area, answer_elevation, answer_google_elevation,
     answer_lookup, answer_mesh, answer_isolines, answer_highest, answer_viewshed, answer_profile,
-    answer_sight, answer_stream, answer_file, answer_raster, answer_schema, answer_tiles,
-    answer_tileset, answer_subtree, answer_content;
+    answer_sight, answer_volume, answer_stream, answer_file, answer_raster, answer_schema,
+    answer_tiles, answer_tileset, answer_subtree, answer_content;
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
@@ -38,5 +38,6 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters raster_parameters();
 [[nodiscard]] ask::Parameters stream_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
+[[nodiscard]] ask::Parameters volume_parameters();
 
 }  // namespace ptin::serve
