@@ -51,6 +51,70 @@ TEST_F(Serve, GivesCoveragesWithOneMeaningOfNull) {
   EXPECT_EQ(heights["values"][1 * 20 + 18], point["points"][0]["height"]);
 }
 
+/// Looks whether exactly the positions of a coverage's grid that lie in a shape are told.
+template <class Holds>
+void expect_told_within(const json& coverage, const Holds& holds) {
+  const json &x = coverage["domain"]["axes"]["x"], &y = coverage["domain"]["axes"]["y"];
+  const auto at = [](const json& axis, int i) {
+    const double first = axis["start"], last = axis["stop"];
+    return first + (last - first) * i / (axis["num"].get<int>() - 1);
+  };
+  std::set<bool> seen;
+  const json& states = coverage["ranges"]["state"]["values"];
+  for (int row = 0, i = 0; row < y["num"]; ++row) {
+    for (int column = 0; column < x["num"]; ++column, ++i) {
+      const MapPoint p{at(x, column), at(y, row)};
+      EXPECT_EQ(states[static_cast<std::size_t>(i)] != 3, holds(p)) << p.x << " " << p.y;
+      seen.insert(holds(p));
+    }
+  }
+  EXPECT_EQ(seen.size(), 2U);
+}
+
+TEST_F(Serve, GivesCubesRadiiAndCorridors) {
+  const Window w = middle_of_bounds(*mountains_, 0.2);
+  const std::string grid = "?crs=native&resolution-x=21&resolution-y=23";
+  const json cube = get(in("mountains", "cube") + grid + "&bbox=" + window_text(w)).json();
+  EXPECT_EQ(cube["ranges"]["height"]["shape"], (json{23, 21}));
+  for (const json& state : cube["ranges"]["state"]["values"]) EXPECT_NE(state, 3);
+  const double x = (w.min_x + w.max_x) / 2, y = (w.min_y + w.max_y) / 2;
+  const std::string middle = encoded("POINT(" + text_of({x, y}) + ")");
+  const std::string around = grid + "&within=0.4&within-units=KM&coords=" + middle;
+  expect_told_within(get(in("mountains", "radius") + around).json(),
+                     [&](MapPoint p) { return std::hypot(p.x - x, p.y - y) <= 400; });
+  const std::string line =
+      encoded("LINESTRING(" + text_of({x - 500, y}) + "," + text_of({x + 500, y}) + ")");
+  expect_told_within(
+      get(in("mountains", "corridor") + grid +
+          "&corridor-width=300&width-units=m&corridor-height=1" + "&height-units=m&coords=" + line)
+          .json(),
+      [&](MapPoint p) {
+        const double beyond = std::max(0.0, std::abs(p.x - x) - 500);
+        return std::hypot(beyond, p.y - y) <= 150;
+      });
+  // A height is that at its position.
+  const json one = get(in("mountains", "position?crs=native&f=json&coords=" + middle)).json();
+  const json circle = get(in("mountains", "radius") + around).json();
+  EXPECT_NEAR(circle["ranges"]["height"]["values"][11 * 21 + 10].get<double>(),
+              one["points"][0]["height"].get<double>(), 1e-6);
+  const json queries = get("/collections/mountains").json()["data_queries"];
+  for (const char* query : {"cube", "radius", "corridor"}) {
+    EXPECT_EQ(queries[query]["link"]["variables"]["query_type"], query);
+  }
+  EXPECT_EQ(queries["radius"]["link"]["variables"]["within_units"][0], "m");
+  const auto refused = [&](const std::string& target, const char* parameter) {
+    const HttpAnswer answer = get(in("mountains", target));
+    EXPECT_EQ(answer.status, 400) << target << answer.body.substr(0, 200);
+    EXPECT_EQ(answer.json().value("parameter", ""), parameter) << answer.body;
+  };
+  refused("cube?crs=native", "bbox");
+  refused("radius?crs=native&within-units=m&coords=" + middle, "within");
+  refused("radius?crs=native&within=1&coords=" + middle, "within-units");
+  refused("radius?crs=native&within=1&within-units=parsec&coords=" + middle, "within-units");
+  refused("radius?crs=native&within=-1&within-units=m&coords=" + middle, "within");
+  refused("corridor?crs=native&corridor-width=1&width-units=m&coords=" + middle, "coords");
+}
+
 /// The number of positions along x and along y.
 std::pair<int, int> sides_of(const json& coverage) {
   const json& shape = coverage["ranges"]["height"]["shape"];

@@ -96,9 +96,13 @@ std::string asked_for(std::string address) {
   for (const std::string_view mark : {"{z}", "{x}", "{y}", "{level}", "{x}", "{y}"}) put(mark, "0");
   put("{version}", "1");
   const std::string place = "500500 3999500";
-  const auto ask = [&](std::string_view end, const std::string& coords) {
-    if (address.ends_with(end)) address += "?crs=native&coords=" + encoded(coords);
+  const auto ask = [&](std::string_view end, const std::string& coords,
+                       const std::string& more = {}) {
+    if (address.ends_with(end)) address += "?crs=native&coords=" + encoded(coords) + more;
   };
+  ask("/radius", "POINT(" + place + ")", "&within=100&within-units=m");
+  ask("/corridor", "LINESTRING(" + place + ",500600 3999500)", "&corridor-width=100&width-units=m");
+  if (address.ends_with("/cube")) address += "?crs=native&bbox=500500,3999500,500600,3999600";
   ask("/position", "POINT(" + place + ")");
   ask("/trajectory", "LINESTRING(" + place + ",500600 3999500)");
   ask("/area", "POLYGON((" + place + ",500600 3999500,500600 3999600," + place + "))");

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Heights on a grid within a polygon: OGC EDR's `area`.
+// Heights on a grid within a shape: OGC EDR's `area`, `cube`, `radius` and `corridor`.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/crs/ground.h"
 #include "engine/stop.h"
 #include "tools/ask/questions.h"
+#include "tools/facts/human.h"
+#include "tools/facts/quantity.h"
 #include "tools/facts/source_count.h"
 #include "tools/http/problem.h"
+#include "tools/output/file_name.h"
+#include "tools/region/straight_sides.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
 #include "tools/serve/questions.h"
@@ -29,16 +35,78 @@ struct AreaQuestion {
   std::optional<std::uint64_t> columns, rows;
 };
 
-void add_question(ask::Parameters& rows, AreaQuestion& question) {
-  ask::add_question(rows, question.request);
-  rows.front().help = "The area as WKT, POLYGON or MULTIPOLYGON";
-  rows.front().example = "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))";
+void add_resolution(ask::Parameters& rows, AreaQuestion& question) {
   rows.add(kColumns, &question.columns, "",
            "Positions along x, both ends included; 0: those of the terrain's samples; without it "
            "as many as make squares with those along y, or 65 along the longer side")
       .at(ask::Door::kService)
       .like("50");
   rows.add(kRows, &question.rows, "", "The same along y").at(ask::Door::kService).like("50");
+}
+
+void add_question(ask::Parameters& rows, AreaQuestion& question) {
+  ask::add_question(rows, question.request);
+  rows.front().help = "The area as WKT, POLYGON or MULTIPOLYGON";
+  rows.front().example = "POLYGON((-118.31 34.34, -118.3 34.34, -118.3 34.35, -118.31 34.34))";
+  add_resolution(rows, question);
+}
+
+struct CubeQuestion : AreaQuestion {
+  ask::RegionText region;
+};
+
+void add_question(ask::Parameters& rows, CubeQuestion& question) {
+  ask::add_window(rows, question.region, ask::Door::kService);
+  rows.back().required_at(ask::Door::kService);
+  ask::add_detail(rows, question.request.detail, "; heights come with intervals",
+                  "The TIN of the terrain's N most important vertices, instead of an error",
+                  ask::Door::kService);
+  ask::add_crs(rows);
+  add_resolution(rows, question);
+}
+
+/// A length over ground, as a number and a unit in a parameter of its own.
+struct Around : AreaQuestion {
+  double length = 0.0;
+  std::string unit;
+};
+
+void add_length(ask::Parameters& rows, Around& question, const char* name, const char* unit_name,
+                const char* help) {
+  rows.add(name, &question.length, "", help)
+      .within(NumberRange::kPositive)
+      .at(ask::Door::kService)
+      .required_at(ask::Door::kService)
+      .like("1");
+  rows.add(unit_name, &question.unit, "",
+           "The unit of that length over ground: " + tools::known_length_units())
+      .at(ask::Door::kService)
+      .required_at(ask::Door::kService)
+      .like("km");
+}
+
+struct RadiusQuestion : Around {};
+
+void add_question(ask::Parameters& rows, RadiusQuestion& question) {
+  ask::add_question(rows, question.request);
+  rows.front().help = "The middles as WKT, POINT or MULTIPOINT";
+  add_length(rows, question, "within", "within-units", "How far around them, over ground");
+  add_resolution(rows, question);
+}
+
+struct CorridorQuestion : Around {};
+
+void add_question(ask::Parameters& rows, CorridorQuestion& question) {
+  ask::add_question(rows, question.request);
+  rows.front().help = "The middle as WKT, LINESTRING or MULTILINESTRING";
+  rows.front().example = "LINESTRING(-118.3 34.34, -118.29 34.35)";
+  add_length(rows, question, "corridor-width", "width-units",
+             "The whole width of the corridor, over ground");
+  for (const char* name : {"corridor-height", "height-units", "resolution-z"}) {
+    ask::add_text(rows, name,
+                  "Accepted and without effect: a surface has one height at a position");
+  }
+  add_resolution(rows, question);
 }
 
 constexpr double kStepsOfGrid = 64;
@@ -152,8 +220,7 @@ StoredSample stored_sample(const Asked& asked, const Places& places, const Windo
 }
 
 Grid grid_of(const Asked& asked, const AreaQuestion& question, const Places& places,
-             const Polygon& polygon) {
-  const Window box = box_of(polygon);
+             const Window& box) {
   const double width = box.max_x - box.min_x, height = box.max_y - box.min_y;
   std::optional<std::uint64_t> columns = question.columns, rows = question.rows;
   if (!columns && rows == 0U) columns = 0;
@@ -200,7 +267,13 @@ Json axis_json(const Side& side) {
   return {{"start", side.first}, {"stop", side.last}, {"num", side.count}};
 }
 
-/// The positions of a grid that lie within a polygon.
+/// A shape in the CRS of the client.
+struct Shape {
+  Window box{};
+  std::function<bool(MapPoint)> holds;
+};
+
+/// The positions of a grid that lie within a shape.
 struct Inner {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<MapPoint> at;         ///< In the CRS of the client.
@@ -208,14 +281,14 @@ struct Inner {
 };
 
 /// Cost: positions of the grid times corners, both within the limit `points`.
-Inner inner_of(const Asked& asked, const Grid& grid, const Polygon& polygon) {
+Inner inner_of(const Asked& asked, const Grid& grid, const Shape& shape) {
   Inner inner;
   inner.number.assign(grid.size(), Inner::kNone);
   for (std::size_t row = 0; row < grid.y.count; ++row) {
     stop_if_asked(asked.limits.stop, "the area");
     for (std::size_t column = 0; column < grid.x.count; ++column) {
       const MapPoint p = grid.at(column, row);
-      if (!is_within(polygon, p)) continue;
+      if (!shape.holds(p)) continue;
       inner.number[row * grid.x.count + column] = inner.at.size();
       inner.at.push_back(p);
     }
@@ -237,18 +310,87 @@ Coverage coverage_of(const Grid& grid, const Inner& inner, const LocateResult& r
   return coverage;
 }
 
-}  // namespace
+/// Metres of a length that a question names.
+double metres_of(const Around& question, const char* unit_name) {
+  const auto one = tools::length_of("1" + tools::lower_case(question.unit));
+  if (one && one->has_unit()) return question.length * one->metres;
+  throw http::Problem(400, "\"" + tools::shown(question.unit) +
+                               "\" is no unit of lengths here; there are " +
+                               tools::known_length_units())
+      .at(unit_name);
+}
 
-ask::Parameters area_parameters() { return with_coverage(described<AreaQuestion>()); }
+/// Metres over ground of one map unit at a position of the terrain's CRS.
+MapPoint metres_at(const Asked& asked, MapPoint at) {
+  if (const auto metres = metres_per_map_unit(asked.collection->crs, at)) return *metres;
+  throw http::Problem(400,
+                      "nothing tells the unit of this terrain's map, so lengths over ground "
+                      "mean nothing on it; ask for an area")
+      .at("coords");
+}
 
-http::Response answer_area(const Asked& asked) {
+/// Makes a window larger by metres on every side, in the terrain's CRS.
+Window widened(const Asked& asked, Window w, double metres) {
+  const double up = metres / metres_at(asked, {w.min_x, w.min_y}).y;
+  w.min_y -= up;
+  w.max_y += up;
+  // In degrees the most at the side nearer to a pole.
+  const double across =
+      std::min(metres_at(asked, {w.min_x, w.min_y}).x, metres_at(asked, {w.min_x, w.max_y}).x);
+  w.min_x -= metres / across;
+  w.max_x += metres / across;
+  return w;
+}
+
+/// A box of the terrain's CRS in the client's; across the antimeridian it goes on beyond 180.
+Window box_for_client(const Places& places, const Window& there) {
+  if (places.is_native()) return there;
+  auto box = places.from_terrain(there);
+  if (!box) {
+    throw http::Problem(400, "the shape reaches where the CRS of the question has no positions")
+        .at("coords");
+  }
+  if (box->min_x > box->max_x) box->max_x += 360;
+  return *box;
+}
+
+/// What lies within metres of lines in the terrain's CRS; a position is a line of one corner.
+Shape around(const Asked& asked, const Places& places, std::vector<std::vector<MapPoint>> lines,
+             double metres) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Window box{kFar, kFar, -kFar, -kFar};
+  for (const auto& line : lines) {
+    for (const MapPoint& p : line) {
+      box = {std::min(box.min_x, p.x), std::min(box.min_y, p.y), std::max(box.max_x, p.x),
+             std::max(box.max_y, p.y)};
+    }
+  }
+  Shape shape{box_for_client(places, widened(asked, box, metres)), {}};
+  shape.holds = [&asked, &places, metres, lines = std::move(lines)](MapPoint client) {
+    const MapPoint p = places.to_terrain(client);
+    const MapPoint unit = metres_at(asked, p);
+    for (const auto& line : lines) {
+      for (std::size_t i = 0; i < line.size(); ++i) {
+        const MapPoint &a = line[i], &b = line[i + 1 < line.size() ? i + 1 : i];
+        const double bx = (b.x - a.x) * unit.x, by = (b.y - a.y) * unit.y;
+        const double px = (p.x - a.x) * unit.x, py = (p.y - a.y) * unit.y;
+        const double length = bx * bx + by * by;
+        const double share = length > 0 ? std::clamp((px * bx + py * by) / length, 0.0, 1.0) : 0.0;
+        if (std::hypot(px - share * bx, py - share * by) <= metres) return true;
+      }
+    }
+    return false;
+  };
+  return shape;
+}
+
+/// The answer of all: the heights of the grid in a shape.
+http::Response answer_in(const Asked& asked, AreaQuestion question, const Places& places,
+                         const Shape& shape) {
   const ask::Format& format = format_of(asked);
-  auto question = read<AreaQuestion>(asked);
   const CoverageNames names = coverage_names(asked);
-  const Places places = places_of(asked);
-  const Polygon polygon = polygon_of(asked, places);
-  const Grid grid = grid_of(asked, question, places, polygon);
-  Inner inner = inner_of(asked, grid, polygon);
+  const Grid grid = grid_of(asked, question, places, shape.box);
+  Inner inner = inner_of(asked, grid, shape);
   std::vector<MapPoint> at = inner.at;
   places.to_terrain(at);
   places.wrap(inner.at);
@@ -260,6 +402,60 @@ http::Response answer_area(const Asked& asked) {
   std::string text =
       points_in(format, asked, places, names, inner.at, result, coverage_of(grid, inner, result));
   return answered(asked, std::move(text), format.media, result);
+}
+
+}  // namespace
+
+ask::Parameters area_parameters() { return with_coverage(described<AreaQuestion>()); }
+ask::Parameters cube_parameters() { return with_coverage(described<CubeQuestion>()); }
+ask::Parameters radius_parameters() { return with_coverage(described<RadiusQuestion>()); }
+ask::Parameters corridor_parameters() { return with_coverage(described<CorridorQuestion>()); }
+
+http::Response answer_area(const Asked& asked) {
+  const auto question = read<AreaQuestion>(asked);
+  const Places places = places_of(asked);
+  const Polygon polygon = polygon_of(asked, places);
+  const Shape shape{box_of(polygon), [&polygon](MapPoint p) { return is_within(polygon, p); }};
+  return answer_in(asked, question, places, shape);
+}
+
+http::Response answer_cube(const Asked& asked) {
+  const auto question = read<CubeQuestion>(asked);
+  const Places places = places_of(asked);
+  static_cast<void>(window_on_terrain(asked, places, question.region.window));
+  Shape shape{*question.region.window, [](MapPoint) { return true; }};
+  if (places.is_geographic() && shape.box.min_x > shape.box.max_x) shape.box.max_x += 360;
+  return answer_in(asked, question, places, shape);
+}
+
+http::Response answer_radius(const Asked& asked) {
+  const auto question = read<RadiusQuestion>(asked);
+  const Places places = places_of(asked);
+  std::vector<std::vector<MapPoint>> lines;
+  for (const MapPoint& p : points_of_wkt(asked.question.text("coords"), "coords")) {
+    lines.push_back({places.to_terrain(p)});
+  }
+  check_count(lines.size(), asked.options.question.points, "positions", "points", "coords");
+  const double metres = metres_of(question, "within-units");
+  return answer_in(asked, question, places, around(asked, places, std::move(lines), metres));
+}
+
+http::Response answer_corridor(const Asked& asked) {
+  const auto question = read<CorridorQuestion>(asked);
+  const Places places = places_of(asked);
+  tools::SideTarget sides = tools::side_target(asked.facts(), 0.0);
+  sides.most_points = asked.options.question.points;
+  std::vector<std::vector<MapPoint>> lines;
+  std::size_t corners = 0;
+  for (auto& line : lines_of_wkt(asked.question.text("coords"), "coords")) {
+    for (auto& there : places.line_to_terrain(std::move(line), sides)) {
+      corners += there.size();
+      lines.push_back(std::move(there));
+    }
+    check_count(corners, asked.options.question.points, "positions", "points", "coords");
+  }
+  const double metres = metres_of(question, "width-units") / 2;
+  return answer_in(asked, question, places, around(asked, places, std::move(lines), metres));
 }
 
 }  // namespace ptin::serve

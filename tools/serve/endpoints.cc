@@ -59,7 +59,7 @@ void add_fields(std::vector<Endpoint>& all, std::string_view name, const ask::Fi
 }
 
 void add_all_fields(std::vector<Endpoint>& all) {
-  for (const char* name : {"position", "area"}) {
+  for (const char* name : {"position", "area", "cube", "radius", "corridor"}) {
     add_fields(all, name, ask::located_fields(), Told::kFeature);
   }
   for (const char* name : {"trajectory", "profile"}) {
@@ -101,6 +101,12 @@ std::vector<Endpoint> made_table() {
        answer_trajectory},
       {"/collections/{id}/area", "area", true, "Heights on a grid within a polygon",
        area_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_area},
+      {"/collections/{id}/cube", "cube", true, "Heights on a grid within a window",
+       cube_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_cube},
+      {"/collections/{id}/radius", "radius", true, "Heights on a grid around positions",
+       radius_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_radius},
+      {"/collections/{id}/corridor", "corridor", true, "Heights on a grid along lines",
+       corridor_parameters(), kHeightFormats, Lane::kTile, Reserves::kQuarter, answer_corridor},
       {"/collections/{id}/coverage", "coverage", false,
        "Heights of a window as a GeoTIFF, or cloud-optimized", raster_parameters(), kRasterFormats,
        Lane::kSweep, Reserves::kAll, answer_raster},

@@ -26,7 +26,8 @@ constexpr std::array kStandards = {
     "http://www.opengis.net/spec/ogcapi-edr-1/1.0/conf/geojson"};
 
 /// What OGC EDR calls a data query; what else there is stands among the links.
-constexpr std::array kDataQueries = {"position", "trajectory", "area"};
+constexpr std::array kDataQueries = {"position", "trajectory", "area",
+                                     "cube",     "radius",     "corridor"};
 constexpr std::array kDataFormats = {"covjson", "geojson", "csv"};  // of each of them
 
 Json link(const std::string& href, const char* rel, std::string_view type, const char* title) {
@@ -75,6 +76,12 @@ Json collection_json(const Collection& c, const std::string& root) {
         {"rel", "data"},
         {"variables", {{"query_type", query}, {"output_formats", kDataFormats}}}};
   }
+  const auto set_units = [&](const char* query, const char* name) {
+    json["data_queries"][query]["link"]["variables"][name] = {"m", "km", "ft"};
+  };
+  set_units("radius", "within_units");
+  set_units("corridor", "width_units");
+  set_units("corridor", "height_units");
   json["parameter_names"] = coverage_parameters(c.crs.vertical_unit);
   json["output_formats"] = kDataFormats;
   json["terrain"] = terrain_json(c);

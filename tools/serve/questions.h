@@ -15,10 +15,11 @@ namespace ptin::serve {
 /// @throws http::Problem, Error
 using Answer = http::Response(const Asked& asked);
 
-Answer answer_position, answer_trajectory, answer_area, answer_elevation, answer_google_elevation,
-    answer_lookup, answer_mesh, answer_isolines, answer_highest, answer_viewshed, answer_profile,
-    answer_sight, answer_volume, answer_stream, answer_file, answer_raster, answer_schema,
-    answer_tiles, answer_tileset, answer_subtree, answer_content;
+Answer answer_position, answer_trajectory, answer_area, answer_cube, answer_radius, answer_corridor,
+    answer_elevation, answer_google_elevation, answer_lookup, answer_mesh, answer_isolines,
+    answer_highest, answer_viewshed, answer_profile, answer_sight, answer_volume, answer_stream,
+    answer_file, answer_raster, answer_schema, answer_tiles, answer_tileset, answer_subtree,
+    answer_content;
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
@@ -32,6 +33,9 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 // The parameters that they take, as rows that describe them, but for `f`.
 [[nodiscard]] ask::Parameters viewer_parameters();
 [[nodiscard]] ask::Parameters area_parameters();
+[[nodiscard]] ask::Parameters cube_parameters();
+[[nodiscard]] ask::Parameters radius_parameters();
+[[nodiscard]] ask::Parameters corridor_parameters();
 [[nodiscard]] ask::Parameters elevation_parameters();
 [[nodiscard]] ask::Parameters lookup_parameters();
 [[nodiscard]] ask::Parameters mesh_parameters();
