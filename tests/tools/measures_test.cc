@@ -110,6 +110,7 @@ std::map<std::string, AskedWith> questions_of(const std::string& feet, const Tes
       {"unstream --interval", {unstream, 9}},
       {"unstream --base", {base_of_stream}},
       {"render --error", {{"render", feet, "--size", "90", "90", "-o", out("a.png")}, 1}},
+      {"render --contours", {{"render", feet, "--size", "90", "90", "-o", out("a.png")}, 9}},
       {"bench --error", {{"bench", feet, "--seconds", "0.01", "--count", "1"}, 1}},
       {"verify --tolerance", {{"verify", feet, "--against", folder.file("feet.tif")}, 1}}};
 }

@@ -69,6 +69,11 @@ std::string ShownUnit::title(const std::string& what) const {
 }
 
 std::string ShownUnit::text(double length) const {
+  // A short part of a long line: 95 m say more than 0.095 km.
+  constexpr double kMetresInKilometre = 1000;
+  if (name == "km" && size == kMetresInKilometre && std::abs(length) < kMetresInKilometre) {
+    return ShownUnit{1.0, "m"}.text(length);
+  }
   std::array<char, 32> text{};
   const double shown = length / size;
   std::snprintf(text.data(), text.size(), std::abs(shown) >= 1000 ? "%.0f" : "%.4g", shown);

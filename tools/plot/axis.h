@@ -30,7 +30,7 @@ struct ShownUnit {
   std::string name;   ///< Short; may be empty.
   /// "what, unit".
   [[nodiscard]] std::string title(const std::string& what) const;
-  /// A number and its unit.
+  /// A number and its unit; in metres what is shorter than the kilometre.
   [[nodiscard]] std::string text(double length) const;
 };
 /// Kilometres for lengths in metres that reach 10 km, else the unit itself.

@@ -100,16 +100,18 @@ bool is_picture_name(const std::string& path) { return find_format(path) != null
 
 class Canvas::Impl {
  public:
-  Impl(std::string path, bool overwrite, int width, int height)
+  Impl(std::string path, bool overwrite, int width, int height, double dots)
       : path_(std::move(path)),
         overwrite_(overwrite),
         width_(width),
         height_(height),
+        dots_(dots),
         format_(format_of(path_)),
         surface_(start_surface(), cairo_surface_destroy),
         cairo_(cairo_create(surface_.get()), cairo_destroy) {
     check();
     if (format_ == PictureFormat::kPdf) cairo_scale(cairo_.get(), kPointsInPixel, kPointsInPixel);
+    if (format_ == PictureFormat::kPng) cairo_scale(cairo_.get(), dots_, dots_);
     // Letters are as wide as they are drawn in the file, whatever the system's settings for its
     // screen are.
     cairo_font_options_t* const options = cairo_font_options_create();
@@ -163,7 +165,7 @@ class Canvas::Impl {
     return extents.x_advance;
   }
 
-  void paint(const Image& image) {
+  void paint(const Image& image, double dots) {
     // Cairo only reads the pixels, and they outlive the surface: finishing it lets go of them.
     auto* const pixels =
         reinterpret_cast<unsigned char*>(const_cast<std::uint32_t*>(image.pixels.data()));
@@ -171,8 +173,11 @@ class Canvas::Impl {
         cairo_image_surface_create_for_data(pixels, CAIRO_FORMAT_RGB24, image.width, image.height,
                                             4 * image.width),
         cairo_surface_destroy);
+    cairo_save(cairo_.get());
+    cairo_scale(cairo_.get(), 1 / dots, 1 / dots);
     cairo_set_source_surface(cairo_.get(), source.get(), 0, 0);
     cairo_paint(cairo_.get());
+    cairo_restore(cairo_.get());
     colour(kInk, 1.0);
     if (format_ != PictureFormat::kPng) cairo_surface_flush(surface_.get());
     check();
@@ -194,9 +199,12 @@ class Canvas::Impl {
 
  private:
   cairo_surface_t* start_surface() {
-    require_room(width_, height_);
+    const double dots = format_ == PictureFormat::kPng ? dots_ : 1.0;
+    const int across = static_cast<int>(std::lround(width_ * dots));
+    const int down = static_cast<int>(std::lround(height_ * dots));
+    require_room(across, down);
     if (format_ == PictureFormat::kPng) {
-      return cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_, height_);
+      return cairo_image_surface_create(CAIRO_FORMAT_RGB24, across, down);
     }
     if (format_ == PictureFormat::kSvg) {
       cairo_surface_t* const made =
@@ -217,21 +225,22 @@ class Canvas::Impl {
   std::string path_;
   bool overwrite_;
   int width_, height_;
+  double dots_;
   PictureFormat format_;
   std::string bytes_;  ///< Bytes of the file; declared before the surface, which writes them.
   Surface surface_;
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> cairo_;
 };
 
-Canvas::Canvas(std::string path, bool overwrite, int width, int height)
-    : impl_(std::make_unique<Impl>(std::move(path), overwrite, width, height)) {}
+Canvas::Canvas(std::string path, bool overwrite, int width, int height, double dots)
+    : impl_(std::make_unique<Impl>(std::move(path), overwrite, width, height, dots)) {}
 
 Canvas::~Canvas() = default;
 
 int Canvas::width() const noexcept { return impl_->width(); }
 int Canvas::height() const noexcept { return impl_->height(); }
 
-void Canvas::paint(const Image& image) { impl_->paint(image); }
+void Canvas::paint(const Image& image, double dots) { impl_->paint(image, dots); }
 
 void Canvas::line(std::span<const CanvasPoint> points, const Stroke& stroke) {
   impl_->trace(points);
@@ -281,9 +290,14 @@ void Canvas::text(CanvasPoint at, const std::string& text, const TextStyle& styl
   cairo_t* const cairo = impl_->cairo();
   cairo_save(cairo);
   cairo_translate(cairo, at.x, at.y);
-  if (style.goes_up) cairo_rotate(cairo, -M_PI / 2);
+  cairo_rotate(cairo, style.turn);
+  if (style.halo > 0) {
+    cairo_move_to(cairo, -share * width, kHalfOfDigit * style.size);
+    cairo_text_path(cairo, shown.c_str());
+    impl_->stroke({{255, 255, 255}, 2 * style.halo, 0.8});
+  }
   cairo_move_to(cairo, -share * width, kHalfOfDigit * style.size);
-  impl_->colour(kInk, 1.0);
+  impl_->colour(style.colour, 1.0);
   cairo_show_text(cairo, shown.c_str());
   cairo_new_path(cairo);
   cairo_restore(cairo);
@@ -300,6 +314,11 @@ void Canvas::clip(const CanvasBox& box) {
 }
 
 void Canvas::unclip() { cairo_restore(impl_->cairo()); }
+
+void Canvas::enter(const CanvasBox& box) {
+  clip(box);
+  cairo_translate(impl_->cairo(), box.left, box.top);
+}
 
 void Canvas::publish() { impl_->publish(); }
 

@@ -43,8 +43,11 @@ struct TextStyle {
   TextAnchor anchor = TextAnchor::kBegin;
   double size = 12.0;  ///< Pixels of the font.
   bool is_bold = false;
-  bool goes_up = false;  ///< Turned, so that it is read from below.
+  double turn = 0.0;  ///< Radians clockwise about its point; kReadFromBelow goes upwards.
+  double halo = 0.0;  ///< Pixels of white around the letters, which keep it legible on a picture.
+  Colour colour = kInk;
 };
+constexpr double kReadFromBelow = -1.5707963267948966;  // a quarter turn
 
 /// White at first. Coordinates are within a million pixels of the sheet; a caller cuts what is not.
 /// The same calls make the same bytes wherever the fonts are the same, but for a number in an SVG
@@ -53,9 +56,11 @@ struct TextStyle {
 class Canvas {
  public:
   /// @param path  Its extension says the format.
+  /// @param dots  Pixels of a PNG for a pixel of the sheet, along each side; the other formats have
+  ///              none.
   /// @throws Error invalid_argument    another extension
   ///               resource_exhausted  the sheet does not fit the system's memory
-  Canvas(std::string path, bool overwrite, int width, int height);
+  Canvas(std::string path, bool overwrite, int width, int height, double dots = 1.0);
   ~Canvas();
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
@@ -63,8 +68,8 @@ class Canvas {
   [[nodiscard]] int width() const noexcept;
   [[nodiscard]] int height() const noexcept;
 
-  /// Draws an image with its upper left corner at that of the sheet.
-  void paint(const Image& image);
+  /// Draws an image, `dots` of whose pixels fill a pixel of the sheet, from the upper left corner.
+  void paint(const Image& image, double dots = 1.0);
   void line(std::span<const CanvasPoint> points, const Stroke& stroke);
   void line(CanvasPoint from, CanvasPoint to, const Stroke& stroke);
   /// Fills what lies within the points.
@@ -80,6 +85,8 @@ class Canvas {
   /// Draws within a box alone, until unclip().
   void clip(const CanvasBox& box);
   void unclip();
+  /// Draws within a box alone, whose upper left corner is (0, 0), until unclip().
+  void enter(const CanvasBox& box);
 
   /// Completes the picture and makes its file appear.
   /// @throws Error as OutputFile; resource_exhausted  the system has no memory left

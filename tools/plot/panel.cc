@@ -19,6 +19,8 @@ constexpr Colour kGround{224, 208, 176}, kGroundLine{118, 70, 34};
 constexpr Colour kBand{222, 130, 40}, kVoid{120, 122, 132}, kGrid{206, 208, 214};
 constexpr double kBandOpacity = 0.35;
 constexpr double kStationRadius = 2.4;
+constexpr double kBeyond =
+    0.12;  // of the heights' range, above and below: for the ground, and for words
 const Stroke kHatch{kVoid, 1.0, 0.8};
 
 /// The first, lowest, highest and last of the points in each half of a pixel's column.
@@ -51,14 +53,17 @@ PanelScales::PanelScales(const PlotUnits& units, double longest, double lowest, 
     : length(longest > 0 ? longest : 1.0), lengths(shown_unit(units.length, length)) {
   heights = {1.0, short_unit(units.height)};
   if (!(lowest <= highest)) return;
-  // Level ground is drawn level, and not what rounding makes of it: at most about 100 times steeper
-  // than it is, and in numbers that are not longer than five digits and a sign.
+  // Level ground is drawn level, and not what rounding makes of it: at most kMostExaggeration times
+  // steeper than it is, and in numbers that are not longer than five digits and a sign.
+  constexpr double kMostExaggeration = 40.0;
+  constexpr double kAspect = (kPanelHeight - kAbove - kBelow) / (kSheetWidth - kLeft - kRight);
   const double largest = std::max(std::abs(lowest), std::abs(highest));
-  const double least = std::max({1e-6, 1e-4 * largest, 0.0025 * length * units.heights_per_length});
+  const double flattest = kAspect / (kMostExaggeration * (1 + 2 * kBeyond)) * length;
+  const double least = std::max({1e-6, 1e-4 * largest, flattest * units.heights_per_length});
   const double range = std::max(highest - lowest, least);
   const double middle = (lowest + highest) / 2;
-  low = std::min(lowest, middle - range / 2) - 0.12 * range;  // room for the ground, and for words
-  high = std::max(highest, middle + range / 2) + 0.12 * range;
+  low = std::min(lowest, middle - range / 2) - kBeyond * range;
+  high = std::max(highest, middle + range / 2) + kBeyond * range;
 }
 
 void require_panels(std::size_t count, const std::string& things, const std::string& path) {
@@ -246,7 +251,7 @@ void Panel::draw_axes() {
   canvas_.text({(a.left + a.right) / 2, a.bottom + 34}, lengths.title(scales_.across),
                {TextAnchor::kMiddle});
   canvas_.text({18, (a.top + a.bottom) / 2}, scales_.heights.title(scales_.up),
-               {.anchor = TextAnchor::kMiddle, .goes_up = true});
+               {.anchor = TextAnchor::kMiddle, .turn = kReadFromBelow});
 }
 
 void Panel::draw_note(const std::string& text) {

@@ -27,6 +27,28 @@ void draw_frame(Canvas& canvas, const CanvasBox& a) {
               {});
 }
 
+/// The ticks whose texts have room beside each other. Powers of ten come first: an axis of 1, 10, 100 is
+/// read more easily than one of 2, 10, 50.
+/// @param place   Where a tick's text has its middle, in pixels along the axis.
+/// @param extent  How much of the axis a text takes, in pixels.
+template <class Place, class Extent>
+std::vector<LogScale::Tick> with_room(const LogScale& scale, const Place& place,
+                                      const Extent& extent) {
+  constexpr double kApart = 6;
+  std::vector<LogScale::Tick> kept;
+  for (const bool of_tens : {true, false}) {
+    for (const LogScale::Tick& tick : scale.ticks()) {
+      if (!tick.has_text || tick.is_power_of_ten != of_tens) continue;
+      const bool has_room = std::none_of(kept.begin(), kept.end(), [&](const LogScale::Tick& k) {
+        return std::abs(place(k.value) - place(tick.value)) <
+               (extent(k.value) + extent(tick.value)) / 2 + kApart;
+      });
+      if (has_room) kept.push_back(tick);
+    }
+  }
+  return kept;
+}
+
 std::vector<double> values_of(const std::vector<ChartRow>& rows) {
   std::vector<double> values;
   for (const ChartRow& row : rows) {
@@ -54,7 +76,8 @@ LogScale::LogScale(const std::vector<double>& values) {
   for (int decade = first; decade <= first + std::ceil(decades) + 1; ++decade) {
     for (const double digit : {1.0, 2.0, 5.0}) {
       const double value = digit * std::pow(10.0, decade);
-      if (value >= low_ && value <= high_) ticks_.push_back({value, digit == 1 || decades < 3.2});
+      if (value >= low_ && value <= high_)
+        ticks_.push_back({value, digit == 1 || decades < 3.2, digit == 1});
     }
   }
 }
@@ -95,10 +118,13 @@ void RowChart::draw_mark(Canvas& canvas, const ChartRow& row, const ChartMark& m
 void RowChart::draw(Canvas& canvas, CanvasPoint at, double width) const {
   const CanvasBox area{at.x + kNames, at.y + kHeadHeight, at.x + width - kNotes,
                        at.y + height() - kAxisHeight};
+  const auto x_of = [&](double value) { return area.left + area.width() * scale_.share_of(value); };
   for (const LogScale::Tick& tick : scale_.ticks()) {
-    const double x = area.left + area.width() * scale_.share_of(tick.value);
-    canvas.line({x, area.top}, {x, area.bottom}, kFineLine);
-    if (!tick.has_text) continue;
+    canvas.line({x_of(tick.value), area.top}, {x_of(tick.value), area.bottom}, kFineLine);
+  }
+  const auto width_of = [&](double value) { return canvas.text_width(short_number(value)); };
+  for (const LogScale::Tick& tick : with_room(scale_, x_of, width_of)) {
+    const double x = x_of(tick.value);
     canvas.line({x, area.bottom}, {x, area.bottom + 4}, {});
     canvas.text({x, area.bottom + 14}, short_number(tick.value), {TextAnchor::kMiddle});
   }
@@ -143,10 +169,11 @@ void draw_count_chart(Canvas& canvas, const CanvasBox& area, const std::string& 
     return inner.bottom - inner.height() * scale.share_of(value);
   };
   for (const LogScale::Tick& tick : scale.ticks()) {
-    const double y = y_of(tick.value);
-    canvas.line({inner.left, y}, {inner.right, y}, kFineLine);
-    if (tick.has_text)
-      canvas.text({inner.left - 8, y}, short_number(tick.value), {TextAnchor::kEnd});
+    canvas.line({inner.left, y_of(tick.value)}, {inner.right, y_of(tick.value)}, kFineLine);
+  }
+  constexpr double kLineOfText = 8;
+  for (const LogScale::Tick& tick : with_room(scale, y_of, [](double) { return kLineOfText; })) {
+    canvas.text({inner.left - 8, y_of(tick.value)}, short_number(tick.value), {TextAnchor::kEnd});
   }
   for (const int count : counts) {
     canvas.text({x_of(count), inner.bottom + 14}, std::to_string(count), {TextAnchor::kMiddle});

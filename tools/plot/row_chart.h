@@ -21,7 +21,8 @@ class LogScale {
 
   struct Tick {
     double value;
-    bool has_text;  ///< Else a line alone.
+    bool has_text;  ///< Where there is room for it; else a line alone.
+    bool is_power_of_ten;
   };
   /// 0 at the low end, 1 at the high end; values beyond lie on the ends.
   [[nodiscard]] double share_of(double value) const;

@@ -6,9 +6,17 @@
 
 namespace ptin::tools {
 
-namespace {
+TerrainRaster empty_raster(const View& view) {
+  TerrainRaster raster;
+  raster.width = view.width;
+  raster.height = view.height;
+  const std::size_t pixels =
+      static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  raster.heights.resize(pixels);
+  raster.states.resize(pixels, PointState::kOutside);
+  return raster;
+}
 
-/// Where the middles of the pixels stand.
 PixelLattice lattice_of(const View& view) {
   return {{view.window.min_x + (0.5 - view.left) / view.scale_x,
            view.window.max_y - (0.5 - view.top) / view.scale_y},
@@ -16,20 +24,12 @@ PixelLattice lattice_of(const View& view) {
           -1 / view.scale_y};
 }
 
-}  // namespace
-
 TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts, const View& view,
                         const std::stop_token& stop) {
   const Tin& tin = refined.tin;
   const bool has_pages = refined.page_of_triangle.size() == tin.triangles.size();
-  TerrainRaster raster;
-  raster.width = view.width;
-  raster.height = view.height;
-  const std::size_t pixels =
-      static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-  raster.heights.resize(pixels);
-  raster.states.resize(pixels);
-  raster.pages.resize(has_pages ? pixels : 0);
+  TerrainRaster raster = empty_raster(view);
+  raster.pages.resize(has_pages ? raster.states.size() : 0);
   const PixelCentres centres(facts, lattice_of(view), {0, 0, view.width, view.height});
   PixelSampler<float> sampler(facts, centres, {raster.heights, raster.states, raster.pages});
   for (TriangleId t = 0; t < tin.triangles.size(); ++t) {

@@ -27,6 +27,11 @@ struct TerrainRaster {
   }
 };
 
+/// A raster of the size of `view`, all of whose pixels lie outside.
+[[nodiscard]] TerrainRaster empty_raster(const View& view);
+/// Where the middles of the pixels of `view` stand.
+[[nodiscard]] PixelLattice lattice_of(const View& view);
+
 /// Samples the triangles of `refined` at the middles of the pixels of `view`. Cost: triangles plus
 /// pixels; memory: raster_bytes_per_pixel().
 /// @throws Error cancelled

@@ -15,9 +15,6 @@ namespace ptin::tools {
 namespace {
 
 constexpr Colour kBackground{255, 255, 255};
-constexpr Colour kVoidColour{228, 228, 230};
-constexpr Colour kHatchColour{202, 202, 206};
-constexpr Colour kWater{158, 190, 212};
 
 struct Stop {
   float at;
@@ -50,6 +47,10 @@ Slope slope_at(const TerrainRaster& r, int x, int y, double ground_per_pixel, in
           ((z[0][0] + 2 * z[0][1] + z[0][2]) - (z[2][0] + 2 * z[2][1] + z[2][2])) / run};
 }
 
+bool is_level_sea(float height, const Slope& slope) {
+  return height == 0.0F && slope.east == 0.0 && slope.north == 0.0;
+}
+
 /// The light from the north-west, 45 degrees high, on a slope drawn steeper than it is.
 double light_on(const Slope& slope, double exaggeration) {
   static const Light kLight(315, 45);
@@ -77,14 +78,13 @@ Colour pixel_colour(const TerrainRaster& raster, int x, int y, double ground_per
   const std::size_t place = raster.place(x, y);
   if (raster.states[place] == PointState::kOutside) return kBackground;
   if (raster.states[place] == PointState::kVoid) {
-    return (x + y) / factor % 9 == 0 ? kHatchColour : kVoidColour;
+    return (x + y) / factor % style.hatching == 0 ? kHatchColour : kVoidColour;
   }
   const Slope slope = slope_at(raster, x, y, ground_per_pixel, style.reach);
   const float height = raster.heights[place];
-  const bool is_water =
-      height == 0.0F && slope.east == 0.0 && slope.north == 0.0 && style.high > 0.0F;
+  const bool is_water = is_level_sea(height, slope) && style.high > 0.0F;
   Colour colour = style.by_page ? page_colour(raster.pages[place]) : height_colour(height, style);
-  if (is_water && !style.by_page) return kWater;
+  if (is_water && !style.by_page) return kWaterColour;
   const double light = std::max(0.0, light_on(slope, style.exaggeration));
   // Flat ground keeps its colour; shades are a little blue, lights go towards white.
   const double flat = std::sqrt(0.5);
@@ -108,10 +108,12 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
   const double ground = view.ground_per_pixel() * view.width / raster.width;
   for (int y = 0; y < raster.height; y += step) {
     for (int x = 0; x < raster.width; x += step) {
+      style.any_void |= raster.states[raster.place(x, y)] == PointState::kVoid;
       if (raster.states[raster.place(x, y)] != PointState::kSurface) continue;
       const float height = raster.heights[raster.place(x, y)];
       lowest = std::min(lowest, height), highest = std::max(highest, height);
       const Slope slope = slope_at(raster, x, y, ground, style.reach);
+      style.any_water |= is_level_sea(height, slope);
       if (slope.east == 0.0 && slope.north == 0.0) continue;
       heights.push_back(height);
       squares += slope.east * slope.east + slope.north * slope.north;
@@ -125,8 +127,12 @@ ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_
     return style;
   }
   std::sort(heights.begin(), heights.end());
-  style.low = heights[heights.size() / 200];
-  style.high = heights[heights.size() - 1 - heights.size() / 500];
+  const float middle = heights[heights.size() / 2];
+  const float first = heights[heights.size() / 50];
+  const float last = heights[heights.size() - 1 - heights.size() / 50];
+  style.low = std::max(lowest, first - (middle - first));
+  style.high = std::min(highest, last + (last - middle));
+  style.any_water &= style.high > 0.0F && !by_page;
   style.any_below = lowest < style.low;
   style.any_above = highest > style.high;
   constexpr double kPleasantSlope = 0.38;  // The root mean square of slopes in mountains.

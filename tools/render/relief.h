@@ -11,12 +11,18 @@
 
 namespace ptin::tools {
 
+constexpr Colour kVoidColour{228, 228, 230};
+constexpr Colour kHatchColour{202, 202, 206};  ///< Of the lines over voids.
+constexpr Colour kWaterColour{158, 190, 212};
+
 /// How heights become colours and slopes become shades; chosen from what is visible.
 struct ReliefStyle {
   float low = 0.0F;  ///< Height of the lowest colour; lower heights have it too.
   /// Height of the highest colour; higher heights have it too. Below `low`: there is no surface.
   float high = 1.0F;
   bool any_below = false, any_above = false;  ///< There are lower or higher heights.
+  bool any_water = false, any_void = false;   ///< Some is seen.
+  int hatching = 9;                           ///< Pixels of the picture from line to line of voids.
   /// The factor of heights in the shading; more than 1 where the terrain is flat.
   double exaggeration = 1.0;
   bool by_page = false;  ///< Colours show the page that a triangle came from.
@@ -25,7 +31,9 @@ struct ReliefStyle {
   int reach = 1;
 };
 
-/// A style for what `raster` shows.
+/// A style for what `raster` shows. The colours end where 98 % of the ground does, and as far again as
+/// that is from the middle height: a few samples beyond all others, as of birds or towers in point
+/// clouds, take no colours from the rest.
 /// @param reach  ReliefStyle::reach; 1 shows every facet.
 [[nodiscard]] ReliefStyle choose_style(const TerrainRaster& raster, const View& view, bool by_page,
                                        int reach);

@@ -65,10 +65,10 @@ int pixels_between_samples(const AffineMap& map, const View& view) {
   return spacing < kMost ? static_cast<int>(std::max(spacing, 1.0)) : static_cast<int>(kMost);
 }
 
-View supersampled(const View& view, int factor) {
+View supersampled(const View& view, double factor) {
   View fine = view;
-  fine.width *= factor;
-  fine.height *= factor;
+  fine.width = static_cast<int>(std::ceil(view.width * factor));
+  fine.height = static_cast<int>(std::ceil(view.height * factor));
   fine.scale_x *= factor;
   fine.scale_y *= factor;
   fine.left *= factor;

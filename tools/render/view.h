@@ -43,7 +43,7 @@ struct View {
 /// The number of pixels between samples that stand on the steps of the grid, 1 to 12.
 [[nodiscard]] int pixels_between_samples(const AffineMap& map, const View& view);
 
-/// The same view with `factor` times the pixels in each direction.
-[[nodiscard]] View supersampled(const View& view, int factor);
+/// The same view with `factor` times the pixels in each direction, rounded up.
+[[nodiscard]] View supersampled(const View& view, double factor);
 
 }  // namespace ptin::tools
