@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
 #include "storage/file/file_questions.h"
@@ -130,7 +131,7 @@ View view_of(const Window& window, const CrsFacts& crs, int width, int height) {
 }
 
 /// The words of the foot: the CRS, what heights are above, the source.
-std::string foot_of(const nlohmann::json& metadata, const CrsFacts& crs) {
+std::string foot_of(const std::string& attribution, const CrsFacts& crs) {
   std::string foot = crs.name.empty() ? "unknown CRS" : crs.name;
   if (!crs.code.empty()) foot += " (" + crs.code + ")";
   if (!crs.geographic && crs.horizontal_unit != "unknown") {
@@ -139,7 +140,6 @@ std::string foot_of(const nlohmann::json& metadata, const CrsFacts& crs) {
   const std::string vertical = crs.vertical_name.empty() ? "" : ", " + crs.vertical_name;
   if (crs.vertical_unit != "unknown") foot += ". Heights in " + plural_of(crs.vertical_unit);
   foot += (crs.vertical_unit != "unknown" ? vertical : "") + ".";
-  const std::string attribution = metadata.value("attribution", "");
   return attribution.empty() ? foot : foot + " " + attribution;
 }
 
@@ -153,11 +153,11 @@ std::string detail_text(const RefineRequest& request, const CrsFacts& crs) {
 
 SheetText text_of(const RenderOptions& options, const Window& window, const StoreFile& store,
                   const CrsFacts& crs) {
-  const nlohmann::json metadata = metadata_of(store);
+  const Credits credits = credits_of(store);
   SheetText text;
-  const std::string name = std::filesystem::path(options.terrain.file).stem().string();
-  text.title = metadata.value("title", name);
-  text.foot = foot_of(metadata, crs);
+  text.title = credits.title.empty() ? std::filesystem::path(options.terrain.file).stem().string()
+                                     : credits.title;
+  text.foot = foot_of(credits.attribution, crs);
   text.length_unit = unit_of_ground(crs);
   text.height_unit = crs.vertical_unit;
   text.is_in_degrees = crs.geographic;
