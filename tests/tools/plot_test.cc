@@ -301,8 +301,8 @@ TEST_F(Plots, OfTheTerrainKeepItsTrianglesAsVectors) {
   }
   const std::string svg = read_file(folder_.file("r.svg"));
   EXPECT_EQ(count_of(svg, "<image "), 1U);
-  const json info =
-      answer_of({"render", file_, "--size", "200", "200", "-o", folder_.file("t.png"), "--json"});
+  const json info = answer_of({"render", file_, "--wireframe", "--size", "200", "200", "-o",
+                               folder_.file("t.png"), "--json"});
   EXPECT_GT(count_of(svg, "<path "), info.at("triangles").get<std::size_t>());
   EXPECT_TRUE(read_file(folder_.file("r.pdf")).starts_with("%PDF-"));
   EXPECT_EQ(run_ptin({"render", file_, "-o", folder_.file("r.jpg")}).status, 2);

@@ -232,7 +232,7 @@ TEST(Render, DrawsContoursAndSheetsOfEveryStyle) {
   const std::string store = testing::built(folder, "mountains_257.tif");
   const auto svg_of = [&](std::vector<std::string> more, const std::string& name) {
     more.insert(more.begin(),
-                {"render", store, "--size", "600", "500", "-q", "-o", folder.file(name)});
+                {"render", store, "--size", "400", "420", "-q", "-o", folder.file(name)});
     testing::expect_done(more);
     return testing::read_file(folder.file(name));
   };
@@ -244,12 +244,18 @@ TEST(Render, DrawsContoursAndSheetsOfEveryStyle) {
   };
   const std::string map = svg_of({}, "map.svg"), plain = svg_of({"--style", "plain"}, "plain.svg");
   EXPECT_GT(paths_of(map), paths_of(plain) + 20);
-  const std::string lines = svg_of({"--contours", "100", "--error", "5"}, "lines.svg");
-  const std::string feet = svg_of({"--contours", "328.08399ft", "--error", "5"}, "feet.svg");
+  const std::string lines = svg_of({"--contours", "200", "--error", "10"}, "lines.svg");
+  const std::string feet = svg_of({"--contours", "656.16798ft", "--error", "10"}, "feet.svg");
   EXPECT_GT(paths_of(lines), paths_of(map) + 20);
   EXPECT_NEAR(double(paths_of(feet)), double(paths_of(lines)), 0.1 * double(paths_of(lines)));
-  EXPECT_NE(map.find("width=\"554\""), std::string::npos);  // the relief, a pixel a pixel
-  EXPECT_NE(svg_of({"--style", "print"}, "print.svg").find("width=\"1732\""), std::string::npos);
+  const auto image_width_of = [](const std::string& svg) {
+    const std::string width = "width=\"";
+    const auto at = svg.find(width, svg.find("<image "));
+    return std::stod(svg.substr(at + width.size(), 8));
+  };
+  const double pixels = image_width_of(map);
+  EXPECT_GT(pixels, 250);
+  EXPECT_NEAR(image_width_of(svg_of({"--style", "print"}, "print.svg")), 3.125 * pixels, 1);
   for (const std::vector<std::string>& bad :
        {std::vector<std::string>{"--contours", "0"}, {"--contours", "-5"}, {"--style", "poster"}}) {
     std::vector<std::string> words = {"render", store, "-o", folder.file("bad.png")};
