@@ -70,6 +70,7 @@ set(public_headers
     engine/query/raster/pixel_lattice.h
     engine/query/raster/pixel_sampler.h
     engine/query/raster/raster.h
+    engine/query/raster/scattered_pixels.h
     engine/query/raster/surface_normal.h
     engine/query/received/received_mesh.h
     engine/query/refine/hierarchy_check.h

@@ -19,6 +19,7 @@
 #include "engine/query/living/tin_parts.h"
 #include "engine/query/raster/pixel_sampler.h"
 #include "engine/query/raster/raster.h"
+#include "engine/query/raster/scattered_pixels.h"
 #include "engine/query/received/received_mesh.h"
 #include "engine/query/refine/hierarchy_check.h"
 #include "engine/query/refine/moving_window.h"

@@ -72,6 +72,11 @@ RasterResult Terrain::raster(const RasterRequest& request, std::span<double> hei
   return ptin::raster(*this, request, heights, states);
 }
 
+RasterResult Terrain::heights_at(std::span<const MapPoint> centres, const LocateRequest& request,
+                                 std::span<double> heights) const {
+  return ptin::heights_at(*this, centres, request, heights);
+}
+
 HighestResult Terrain::highest(const HighestRequest& request) const {
   return ptin::highest(*this, request);
 }

@@ -11,6 +11,7 @@
 // | heights at points          | locate          | LocateRequest       | heights/locate.h         |
 // | heights along lines        | profile         | ProfileRequest      | heights/profile.h        |
 // | heights at pixels          | raster          | RasterRequest       | raster/raster.h          |
+// | the same, on no lattice    | heights_at      | LocateRequest       | raster/scattered_pixels.h|
 // | highest or lowest point    | highest         | HighestRequest      | heights/highest.h        |
 // | what became void, surface  | class_changes   | ClassChangesRequest | heights/class_changes.h  |
 // | is a line of sight free    | sight           | SightRequest        | sight/sight.h            |
@@ -136,6 +137,9 @@ class Terrain : public OpenedTerrain {
                       const std::function<void(const RasterBlock&)>& receive) const;
   RasterResult raster(const RasterRequest& request, std::span<double> heights,
                       std::span<PointState> states = {}) const;
+  /// Heights at the centres of pixels of another projection, close together.
+  RasterResult heights_at(std::span<const MapPoint> centres, const LocateRequest& request,
+                          std::span<double> heights) const;
   /// The highest or lowest point of the terrain or of a window.
   [[nodiscard]] HighestResult highest(const HighestRequest& request) const;
   /// Samples that a level of detail moves from surface to void, or back.

@@ -49,6 +49,7 @@ class IsolineExtraction {
         result_(PointStore(bytes_of_share(request, kShareOfPoints), request.temporary_folder)) {
     if (!request.region) return;
     region_.emplace(*request.region, store_.facts().map);
+    if (!request.cuts) return;
     if (const auto* window = std::get_if<Window>(&*request.region)) {
       clip_ = [kept = snapped(*window, store_.facts().map)](std::span<const MapPoint> line) {
         return clip_line(line, kept);

@@ -24,6 +24,9 @@ struct IsolineRequest {
   std::vector<double> levels;  ///< Height's unit, in any order; repetitions are dropped.
   /// A window or a polygon, map units; lines are cut at its border. None: everywhere.
   std::optional<Region> region;
+  /// Off: lines go on to the last triangle that meets the region. Segments are whole then, so that
+  /// what lies across two regions has the same ends in both.
+  bool cuts = true;
   DetailRequest detail;                   ///< The TIN of which the isolines are.
   std::uint64_t most_lines = 10'000'000;  ///< More lines than this are refused.
   QueryLimits limits;

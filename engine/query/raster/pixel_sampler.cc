@@ -18,38 +18,16 @@ bool is_smallest(const LivingTriangle& t) {
   return orient(t.corner[0].position, t.corner[1].position, t.corner[2].position) == 1;
 }
 
-/// The weights of the corners at a spot of the triangle's box, where 64 bits hold them: sides of
-/// 2^18 grid units make products of 2^58.
-std::array<Int128, 3> short_weights(const LivingTriangle& t, Spot q) {
-  const auto weight = [q](GridPoint a, GridPoint b) {
-    const Spot from = spot_of(a);
-    return Int128{(std::int64_t{b.x} - a.x) * (q.y - from.y) -
-                  (std::int64_t{b.y} - a.y) * (q.x - from.x)};
-  };
-  return {weight(t.corner[1].position, t.corner[2].position),
-          weight(t.corner[2].position, t.corner[0].position),
-          weight(t.corner[0].position, t.corner[1].position)};
-}
-
-bool is_short(const GridBox& box) {
-  constexpr std::int32_t kShort = 1 << 18;
-  return box.max_x - box.min_x <= kShort && box.max_y - box.min_y <= kShort;
-}
-
-bool all_above(const std::array<Int128, 3>& weights) {
-  return weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0;
-}
-
 /// Calls found(place, spot, weights) for each centre in the closed triangle.
 template <class Found>
 void for_centres_in(const PixelCentres& centres, const LivingTriangle& t, const Found& found) {
   const GridBox box = box_of(t);
   if (centres.misses(box)) return;
-  const bool has_short_sides = is_short(box);
+  const SpotWeights weights_at(t);
   centres.near(t.corner[0].position, t.corner[1].position, t.corner[2].position,
                [&](std::size_t place, Spot q) {
-                 const auto weights = has_short_sides ? short_weights(t, q) : weights_of(t, q);
-                 if (all_above(weights)) found(place, q, weights);
+                 const auto weights = weights_at.at(q);
+                 if (SpotWeights::is_inside(weights)) found(place, q, weights);
                });
 }
 
