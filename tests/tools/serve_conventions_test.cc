@@ -157,7 +157,7 @@ TEST_F(ServeConventions, AnswersTheLinksOfItsPage) {
     const std::string target = page.substr(at, page.find('"', at) - at);
     EXPECT_EQ(get(target).status, 200) << target;
   }
-  EXPECT_EQ(links, 5U);  // The viewer and the facts of two terrains, and /api.
+  EXPECT_EQ(links, 6U);  // On the map and the facts of two terrains, /api and /collections.
   EXPECT_EQ(get("/viewer/?collection=coast&vertices=1000").status, 200);
 }
 

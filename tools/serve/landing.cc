@@ -3,10 +3,13 @@
 // The pages about the service itself: landing page, conformance, collections.
 #include <array>
 #include <string>
+#include <vector>
 
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
+#include "tools/serve/landing_page.h"
+#include "tools/serve/limit_table.h"
 #include "tools/serve/places.h"
 #include "tools/serve/questions.h"
 
@@ -47,12 +50,13 @@ Json terrain_json(const Collection& c) {
 
 Json collection_json(const Collection& c) {
   const std::string base = "/collections/" + c.id, crs = uri_of(c.crs);
-  Json json = {{"id", c.id},
-               {"title", c.id},
-               {"links",
-                {link(base, "self", kJson, "this document"),
-                 link(base + "/stream", "item", "application/vnd.ptin.stream",
-                      "progressive transmission")}}};
+  Json json = {
+      {"id", c.id},
+      {"title", c.id},
+      {"links",
+       {link(base, "self", kJson, "this document"),
+        link(base + "/stream", "item", "application/vnd.ptin.stream", "progressive transmission"),
+        link(base + "/thumbnail.png", "preview", "image/png", "a small picture")}}};
   const Window w = c.lon_lat.value_or(c.bounds);
   json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
                                {"crs", c.lon_lat ? kCrs84 : std::string_view(crs)}};
@@ -71,6 +75,18 @@ Json collection_json(const Collection& c) {
   json["output_formats"] = kDataFormats;
   json["terrain"] = terrain_json(c);
   return json;
+}
+
+/// What bounds a question, so that clients ask within it.
+Json limits_json(const ServeOptions& options) {
+  Json limits = Json::object();
+  for (const LimitFact& limit : limit_table()) {
+    for (const char* name : {"question_memory", "computing", "points", "vertices", "held_vertices",
+                             "have", "pixels", "most_stream_bytes"}) {
+      if (limit.name == name) limits[name] = limit.get(options);
+    }
+  }
+  return limits;
 }
 
 Json all_json(const Asked& asked) {
@@ -96,17 +112,9 @@ Json landing_json() {
 }
 
 std::string landing_html(const Asked& asked) {
-  std::string page =
-      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
-      "<meta name=\"viewport\" content=\"width=device-width\">"
-      "<link rel=\"icon\" href=\"data:,\"><style>body{font:16px/1.5 "
-      "system-ui;max-width:46rem;margin:3rem auto;padding:0 "
-      "1rem}</style><main><h1>Terrains</h1><ul>";
-  for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
-    page += "<li><a href=\"/viewer/index.html?collection=" + c->id + "\">" + c->id +
-            "</a> (<a href=\"/collections/" + c->id + "\">facts</a>)</li>";
-  }
-  return page + "</ul><p><a href=\"/api\">The service as OpenAPI</a></p></main></html>\n";
+  std::vector<ListedTerrain> terrains;
+  for (const auto& c : asked.catalogue.all()) terrains.push_back({c, collection_json(*c)});
+  return landing_page(terrains, "");
 }
 
 }  // namespace
@@ -119,6 +127,10 @@ http::Response answer_landing(const Asked& asked) {
   return response;
 }
 
+http::Response answer_style(const Asked& asked) {
+  return text_response(std::string(landing_style()), asked.formats.front().media);
+}
+
 http::Response answer_conformance(const Asked& asked) {
   return json_response({{"conformsTo", kStandards}}, format_of(asked).media);
 }
@@ -128,7 +140,9 @@ http::Response answer_collections(const Asked& asked) {
 }
 
 http::Response answer_collection(const Asked& asked) {
-  return json_response(collection_json(*asked.collection), format_of(asked).media);
+  Json json = collection_json(*asked.collection);
+  json["limits"] = limits_json(asked.options);
+  return json_response(json, format_of(asked).media);
 }
 
 }  // namespace ptin::serve

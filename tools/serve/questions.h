@@ -21,7 +21,7 @@ Answer answer_position, answer_trajectory, answer_area, answer_elevation, answer
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
-    answer_collection;
+    answer_collection, answer_style, answer_thumbnail;
 
 /// A service of these questions as OpenAPI 3.0.
 [[nodiscard]] ask::Json openapi(std::span<const Endpoint> all, const ServeOptions& options);
@@ -32,6 +32,7 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters elevation_parameters();
 [[nodiscard]] ask::Parameters mesh_parameters();
 [[nodiscard]] ask::Parameters stream_parameters();
+[[nodiscard]] ask::Parameters thumbnail_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
 
 }  // namespace ptin::serve
