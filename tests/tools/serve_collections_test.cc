@@ -143,6 +143,44 @@ TEST_F(ServeElsewhere, HasTilesWhereNoPoleIs) {
   EXPECT_LT(region[1].get<double>(), region[3].get<double>());
 }
 
+TEST_F(Serve, DrawsThumbnailsOnce) {
+  const std::string path = in("mountains", "thumbnail.png?width=64&height=40");
+  const HttpAnswer drawn = get(path), kept = get(path);
+  ASSERT_EQ(drawn.status, 200);
+  EXPECT_EQ(drawn.header("content-type"), "image/png");
+  const auto number = [&](std::size_t at) {
+    return static_cast<unsigned char>(drawn.body.at(at)) * 256U +
+           static_cast<unsigned char>(drawn.body.at(at + 1));
+  };
+  EXPECT_EQ(drawn.body.substr(1, 3), "PNG");
+  EXPECT_EQ(number(18), 64U);  // Of the header: the width's lower half.
+  EXPECT_EQ(number(22), 40U);
+  EXPECT_EQ(kept.body, drawn.body);
+  EXPECT_NE(kept.header("server-timing").find("cache"), std::string::npos);
+  EXPECT_EQ(get(in("mountains", "thumbnail.png?width=8")).status, 400);
+  EXPECT_EQ(get(in("mountains", "thumbnail.png?height=5000")).status, 400);
+}
+
+TEST_F(Serve, ListsItsTerrainsForPeopleWithoutScriptOrStyleOfThePage) {
+  const std::string page = get("/", "Accept: text/html\r\n").body;
+  for (const char* own : {"<script", "<style", "style=", "data:", "onclick"}) {
+    EXPECT_EQ(page.find(own), std::string::npos) << own;
+  }
+  for (const char* told :
+       {"collections/mountains/thumbnail.png", "viewer/index.html?collection=coast",
+        "<svg class=\"map\"", "href=\"/style.css\"", "Heights above"}) {
+    EXPECT_NE(page.find(told), std::string::npos) << told;
+  }
+  EXPECT_EQ(get("/style.css").header("content-type"), "text/css; charset=utf-8");
+}
+
+TEST_F(Serve, TellsTheLimitsOfAQuestion) {
+  const json limits = get("/collections/mountains").json()["limits"];
+  EXPECT_EQ(limits["held_vertices"], 500000);
+  EXPECT_EQ(limits["question_memory"], std::uint64_t{64} << 20);
+  EXPECT_TRUE(limits["computing"].is_number_unsigned());
+}
+
 TEST_F(Serve, GivesOutItsFilesByRanges) {
   const std::string file = read_file(files_[0].path);
   EXPECT_EQ(get(in("mountains", "file")).body, file);

@@ -141,7 +141,7 @@ TEST_F(ServeConventions, GivesThePageAsItIsPacked) {
     EXPECT_EQ(plain.header("content-type"), file.media_type);
     const HttpAnswer packed = get(target, "Accept-Encoding: gzip\r\n");
     EXPECT_EQ(packed.header("content-encoding"), "gzip");
-    EXPECT_LT(packed.body.size(), file.content.size() / 2);
+    EXPECT_LT(packed.body.size(), file.content.size() * 2 / 3);
     const std::string known = "If-None-Match: " + packed.header("etag") + "\r\n";
     EXPECT_EQ(get(target, "Accept-Encoding: gzip\r\n" + known).status, 304);
   }
@@ -157,7 +157,7 @@ TEST_F(ServeConventions, AnswersTheLinksOfItsPage) {
     const std::string target = page.substr(at, page.find('"', at) - at);
     EXPECT_EQ(get(target).status, 200) << target;
   }
-  EXPECT_EQ(links, 5U);  // The viewer and the facts of two terrains, and /api.
+  EXPECT_EQ(links, 6U);  // On the map and the facts of two terrains, /api and /collections.
   EXPECT_EQ(get("/viewer/?collection=coast&vertices=1000").status, 200);
 }
 

@@ -33,6 +33,8 @@ constexpr std::array kMeshFormats{ask::Format{"glb", "model/gltf-binary"},
 // Of these no parameter `f` chooses.
 constexpr std::array kViewerMedia{ask::Format{"", "text/html"}, ask::Format{"", "text/javascript"},
                                   ask::Format{"", "application/wasm"}};
+constexpr std::array kStyleMedia{ask::Format{"", "text/css; charset=utf-8"}};
+constexpr std::array kThumbnailMedia{ask::Format{"", "image/png"}};
 constexpr std::array kStreamMedia{ask::Format{"", "application/vnd.ptin.stream"}};
 constexpr std::array kTileMedia{ask::Format{"", "application/vnd.quantized-mesh"},
                                 ask::Format{"", kJson}};
@@ -85,6 +87,8 @@ std::vector<Endpoint> made_table() {
        Lane::kPoint, Reserves::kNothing, answer_landing},
       {"/viewer/*", "viewer", false, "The viewer: /viewer/index.html?collection=ID",
        viewer_parameters(), kViewerMedia, Lane::kPoint, Reserves::kNothing, answer_viewer},
+      {"/style.css", "style", false, "The style of the page of the terrains", none, kStyleMedia,
+       Lane::kPoint, Reserves::kNothing, answer_style},
       {"/conformance", "conformance", false, "The standards that this service keeps", none,
        kPageFormats, Lane::kPoint, Reserves::kNothing, answer_conformance},
       {"/api", "api", false, "This service as OpenAPI 3.0", none, kApiFormats, Lane::kPoint,
@@ -93,6 +97,9 @@ std::vector<Endpoint> made_table() {
        Reserves::kNothing, answer_collections},
       {"/collections/{id}", "collection", false, "One terrain: extent, CRS, questions", none,
        kPageFormats, Lane::kPoint, Reserves::kNothing, answer_collection},
+      {"/collections/{id}/thumbnail.png", "thumbnail", false,
+       "A small picture of the terrain from above", thumbnail_parameters(), kThumbnailMedia,
+       Lane::kTile, Reserves::kAll, answer_thumbnail},
       {"/collections/{id}/position", "position", true, "Heights at positions",
        with_coverage(described<LocateRequest>()), kPositionFormats, Lane::kPoint,
        Reserves::kQuarter, answer_position},

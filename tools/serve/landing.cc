@@ -3,11 +3,13 @@
 // The pages about the service itself: landing page, conformance, collections.
 #include <array>
 #include <string>
+#include <vector>
 
-#include "tools/formats/markup_text.h"
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/coverage.h"
+#include "tools/serve/landing_page.h"
+#include "tools/serve/limit_table.h"
 #include "tools/serve/places.h"
 #include "tools/serve/questions.h"
 
@@ -52,15 +54,16 @@ Json terrain_json(const Collection& c) {
 
 Json collection_json(const Collection& c, const std::string& root) {
   const std::string base = root + "/collections/" + c.id, crs = uri_of(c.crs);
-  Json json = {{"id", c.id},
-               {"links",
-                {link(base, "self", kJson, "this document"),
-                 link(base + "/coverage", "http://www.opengis.net/def/rel/ogc/1.0/coverage",
-                      "image/tiff; application=geotiff", "heights as GeoTIFF"),
-                 link(base + "/schema", "http://www.opengis.net/def/rel/ogc/1.0/schema",
-                      "application/schema+json", "the values of the coverage"),
-                 link(base + "/stream", "item", "application/vnd.ptin.stream",
-                      "progressive transmission")}}};
+  Json json = {
+      {"id", c.id},
+      {"links",
+       {link(base, "self", kJson, "this document"),
+        link(base + "/coverage", "http://www.opengis.net/def/rel/ogc/1.0/coverage",
+             "image/tiff; application=geotiff", "heights as GeoTIFF"),
+        link(base + "/schema", "http://www.opengis.net/def/rel/ogc/1.0/schema",
+             "application/schema+json", "the values of the coverage"),
+        link(base + "/stream", "item", "application/vnd.ptin.stream", "progressive transmission"),
+        link(base + "/thumbnail.png", "preview", "image/png", "a small picture")}}};
   add_credits(json, c.credits);
   const Window w = c.lon_lat.value_or(c.bounds);
   json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
@@ -88,6 +91,18 @@ Json collection_json(const Collection& c, const std::string& root) {
   return json;
 }
 
+/// What bounds a question, so that clients ask within it.
+Json limits_json(const ServeOptions& options) {
+  Json limits = Json::object();
+  for (const LimitFact& limit : limit_table()) {
+    for (const char* name : {"question_memory", "computing", "points", "vertices", "held_vertices",
+                             "have", "pixels", "most_stream_bytes"}) {
+      if (limit.name == name) limits[name] = limit.get(options);
+    }
+  }
+  return limits;
+}
+
 Json all_json(const Asked& asked) {
   Json collections = Json::array();
   for (const auto& collection : asked.catalogue.all()) {
@@ -110,33 +125,11 @@ Json landing_json(const std::string& root) {
             link(root + "/collections", "data", kJson, "the terrains")}}};
 }
 
-/// Whom to name, behind a terrain.
-std::string credit_html(const Collection& c) {
-  const std::string& text = c.credits.attribution;
-  return text.empty() ? "" : " <small>" + tools::markup_text(text) + "</small>";
-}
-
-/// The page asks the service at the root of its host unless it is told.
-std::string viewer_address(const std::string& root, const std::string& id) {
-  const std::string address = root + "/viewer/index.html?collection=" + id;
-  return root.empty() ? address : address + "&amp;service=" + root;
-}
-
 std::string landing_html(const Asked& asked) {
   const std::string& root = asked.request.base;  // It holds nothing that HTML would read.
-  std::string page =
-      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Terrains</title>"
-      "<meta name=\"viewport\" content=\"width=device-width\">"
-      "<link rel=\"icon\" href=\"data:,\"><style>body{font:16px/1.5 "
-      "system-ui;max-width:46rem;margin:3rem auto;padding:0 "
-      "1rem}</style><main><h1>Terrains</h1><ul>";
-  for (const auto& c : asked.catalogue.all()) {  // An id holds nothing that HTML would read.
-    page += "<li><a href=\"" + viewer_address(root, c->id) + "\">" +
-            tools::markup_text(c->title()) + "</a> (<a href=\"" + root + "/collections/" + c->id +
-            "\">facts</a>)" + credit_html(*c) + "</li>";
-  }
-  return page + "</ul><p><a href=\"" + root +
-         "/api\">The service as OpenAPI</a></p></main></html>\n";
+  std::vector<ListedTerrain> terrains;
+  for (const auto& c : asked.catalogue.all()) terrains.push_back({c, collection_json(*c, root)});
+  return landing_page(terrains, root);
 }
 
 }  // namespace
@@ -149,6 +142,10 @@ http::Response answer_landing(const Asked& asked) {
   return response;
 }
 
+http::Response answer_style(const Asked& asked) {
+  return text_response(std::string(landing_style()), asked.formats.front().media);
+}
+
 http::Response answer_conformance(const Asked& asked) {
   return json_response({{"conformsTo", kStandards}}, format_of(asked).media);
 }
@@ -158,8 +155,9 @@ http::Response answer_collections(const Asked& asked) {
 }
 
 http::Response answer_collection(const Asked& asked) {
-  return json_response(collection_json(*asked.collection, asked.request.base),
-                       format_of(asked).media);
+  Json json = collection_json(*asked.collection, asked.request.base);
+  json["limits"] = limits_json(asked.options);
+  return json_response(json, format_of(asked).media);
 }
 
 }  // namespace ptin::serve

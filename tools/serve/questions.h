@@ -23,7 +23,7 @@ Answer answer_position, answer_trajectory, answer_area, answer_cube, answer_radi
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
-    answer_collection;
+    answer_collection, answer_style, answer_thumbnail;
 
 /// A service of these questions as OpenAPI 3.0.
 /// @param base  As of http::Request.
@@ -41,6 +41,7 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters mesh_parameters();
 [[nodiscard]] ask::Parameters raster_parameters();
 [[nodiscard]] ask::Parameters stream_parameters();
+[[nodiscard]] ask::Parameters thumbnail_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
 [[nodiscard]] ask::Parameters volume_parameters();
 

@@ -16,6 +16,7 @@
 #include "tools/http/preconditions.h"
 #include "tools/http/problem.h"
 #include "tools/http/range.h"
+#include "tools/serve/limit_table.h"
 #include "tools/serve/packed_answer.h"
 
 namespace ptin::serve {
@@ -243,6 +244,8 @@ std::string TerrainService::key_of(const Request& request, const Match& found,
   std::string key = options_.version + "\n" + std::string(found.endpoint->path) + "\n";
   key += request.base + "\n";
   if (collection != nullptr) key += collection->fingerprint + collection->id;
+  // A collection tells them.
+  for (const LimitFact& limit : limit_table()) key += " " + std::to_string(limit.get(options_));
   return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
          http::list_of(request, "accept");
 }

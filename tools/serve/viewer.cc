@@ -56,6 +56,7 @@ ask::Parameters viewer_parameters() {
   ask::add_text(rows, "collection", "The terrain that the page opens", "m");
   ask::add_text(rows, "stream", "The address of a stream, instead of a collection");
   ask::add_text(rows, "service", "The service that has the collection, where it is another one");
+  ask::add_text(rows, "embed", "For a frame in another page: the terrain without its card", "1");
   ask::add_text(rows, "vertices", "So many vertices are shown at most", "400000");
   return rows;
 }

@@ -2,13 +2,18 @@
 //
 // A terrain of `ptin serve` by its address, http://host/collections/ID: what it is, and streams of what a receiver lacks.
 import type { Window } from './map_window.js';
+import { textOf } from './metadata.js';
 import type { Serving } from './received.js';
 import { Problem, opened } from './requests.js';
 
 /** What a service tells of a terrain. */
 export interface Collection {
   title: string;
+  /** Whom to name; empty: nobody told. */
+  attribution?: string;
   bounds: Window;
+  /** What the service gives a question at most, by the names of its limits; those that it tells. */
+  limits?: Readonly<Record<string, number>>;
   /** The least and the greatest of the samples. */
   heights: readonly [number, number];
 }
@@ -27,12 +32,15 @@ export async function collectionAt(address: string, signal?: AbortSignal): Promi
   const json = await response.json().catch(() => {
     signal?.throwIfAborted();
     throw new Problem('This is no terrain service', `What answered at ${address} is not JSON.`, response.status);
-  }) as { title?: unknown; terrain?: Partial<Collection> } | null;
+  }) as { title?: unknown; attribution?: unknown; limits?: Record<string, number>; terrain?: Partial<Collection> } | null;
   const terrain = json?.terrain;
   if (terrain?.bounds === undefined || terrain.heights === undefined) {
     throw new Problem('This is no terrain service', `What answered at ${address} does not describe a terrain.`, response.status);
   }
-  return { title: String(json?.title ?? address.split('/').pop()), bounds: terrain.bounds, heights: terrain.heights };
+  return {
+    title: String(json?.title ?? address.split('/').pop()), attribution: textOf(json?.attribution), bounds: terrain.bounds,
+    heights: terrain.heights, limits: json?.limits ?? {},
+  };
 }
 
 /** Asks for what lacks. Problems of 409 and 413 say that one has to begin anew, or to ask for less. */

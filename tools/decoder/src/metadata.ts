@@ -20,6 +20,9 @@ export interface Units {
 
 /** What the metadata of a stream tell. */
 export interface Told {
+  /** What the terrain is called, and whom to name; empty: not told. */
+  title: string;
+  attribution: string;
   /** The CRS of the map positions as WKT, and of the heights where that is known; null: not told. */
   crs: string | null;
   units: Units;
@@ -47,17 +50,23 @@ export function mapCrsOf(wkt: string): string {
   return wkt;
 }
 
+/** A text, or nothing. */
+export function textOf(value: unknown): string {
+  return typeof value === 'string' ? value : '';
+}
+
 /** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
   const all = (metadata ?? {}) as {
     crs?: { wkt?: unknown } | null; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown;
-    request?: StreamRequest;
+    request?: StreamRequest; title?: unknown; attribution?: unknown;
   };
   const g = all.ground;
   const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
   const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
     isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
   return {
+    title: textOf(all.title), attribution: textOf(all.attribution),
     crs: typeof all.crs?.wkt === 'string' ? all.crs.wkt : null,
     units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
     ground: !known ? null : {

@@ -7,12 +7,15 @@ import {
 } from 'ptin-decoder';
 import { moduleAt } from './fetching';
 import type { Frame } from './frame';
-import type { Answer, Certainty, Progress, Question } from './messages';
+import type { Answer, Certainty, Progress, Question, QuestionOf } from './messages';
 import { type Asked, Questions } from './questions';
+import { cornersOf, joined } from './stations';
 import { StaticStream } from './static_stream';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 export class FileView implements TerrainView {
+  /** The stream itself tells whom to name. */
+  readonly attribution = '';
   private readonly still: StaticStream;
   private bytesInAll = 0;
   /** Nothing more comes. */
@@ -61,22 +64,45 @@ export class FileView implements TerrainView {
   setView(_wanted: Wanted[]): void {}
 
   async answer(question: Question, frame: Frame): Promise<Answer> {
+    if (question.kind === 'area') return this.measured(question, frame);
     if (question.kind === 'viewshed') {
       throw new Problem('Nobody can be asked', 'A viewshed needs a service; this terrain comes from a file.');
     }
     const questions = await this.fetchQuestions();
     // The mesh may have grown while the module came: the question is of the mesh of now.
-    const { certainty, ...asked } = this.askedAt(question.kind === 'height' ? [question.at] : [question.from, question.to]);
+    const corners = question.kind === 'height' ? [question.at] : cornersOf(question);
+    const { certainty, ...asked } = this.askedAt(corners);
     if (question.kind === 'height') return { ...question, located: questions.locate(asked, question.at), certainty };
     if (asked.ground === null && frame.isDegrees) {
       throw new Problem('No lengths', 'Lengths are not known: this stream was written by a program that did not tell its ellipsoid.');
     }
     const { from, to } = question;
-    const profile = { ...questions.profile(asked, from, to), lengths: frame.earth.lengths };
+    if (question.kind === 'profile' && question.isLonLat === true && !frame.isDegrees) {
+      throw new Problem('No degrees', 'This terrain has no degrees, and without a service nobody turns them into its map units.');
+    }
+    const profile = { ...joined(corners.slice(1).map((b, i) => questions.profile(asked, corners[i], b))), lengths: frame.earth.lengths };
     if (question.kind === 'profile') return { ...question, profile, certainty };
     const { observerHeight, targetHeight, frequency } = question.request;
     const sight = questions.sight(asked, from, observerHeight / frame.scaleZ, to, targetHeight / frame.scaleZ, frequency);
     return { ...question, sight, profile, certainty };
+  }
+
+  /** The area of a polygon in plan; of degrees, and of volumes, the page knows nothing. */
+  private measured(question: QuestionOf<'area'>, frame: Frame): Answer {
+    const { unit, metres } = frame.earth.lengths;
+    if (frame.isDegrees || metres === null) {
+      throw new Problem('No areas', 'Areas in degrees, or in map units of an unknown size, need a service; this terrain comes from a file.');
+    }
+    const { ring } = question;
+    const [o] = ring;
+    const twice = ring.reduce((sum, a, i) => {
+      const b = ring[(i + 1) % ring.length];
+      return sum + (a.x - o.x) * (b.y - o.y) - (b.x - o.x) * (a.y - o.y);
+    }, 0);
+    return {
+      ...question, measured: { surface: Math.abs(twice) / 2, empty: 0, cut: null, fill: null, unit },
+      certainty: { error: null, deviation: null, of: 'mesh', isExact: true },
+    };
   }
 
   /** What the metadata tell, once they are there. */

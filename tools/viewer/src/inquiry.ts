@@ -4,28 +4,72 @@
 import type { MapPosition } from 'ptin-decoder';
 import type { Sight, Station } from './answers';
 import { drawnSight } from './drawn_sight';
-import { bound, coordinates, height as heightText, interval, length as lengthText, metres, number, signOf } from './format';
+import { bound, coordinates, count, height as heightText, interval, length as lengthText, metres, number, rounded, signOf } from './format';
 import type { Frame } from './frame';
 import type { Answer, Certainty, FromWorker, Question, ToWorker } from './messages';
 import { colour, download, hide, part, speak, toast } from './page';
+import type { AskedLink } from './permalink';
 import { csvOf, drawPlot } from './plot';
+import type { Projected } from './projected';
 import type { Place, Relief } from './relief';
+import { recoloured } from './seen';
 import { climbOf, extentOf, heightAlong, heightsOf, runsOf } from './stations';
 
-export type Tool = 'height' | 'profile' | 'sight' | 'viewshed';
+export type Tool = 'height' | 'profile' | 'area' | 'sight' | 'viewshed';
 type AnswerOf<K extends Answer['kind']> = Extract<Answer, { kind: K }>;
 type AlongLine = AnswerOf<'profile'> | AnswerOf<'sight'>;
 
+/** What the page lends the tools. */
+export interface Ground {
+  relief: Relief;
+  frame(): Frame | null;
+  send(message: ToWorker): void;
+  /** Where a place of the scene is in the picture. */
+  project(place: Place): Projected;
+  /** Moves the camera: shares of the picture to the right and ahead, or away by a factor. */
+  pan(right: number, ahead: number): void;
+  zoom(factor: number): void;
+  /** What is asked has changed. */
+  changed(): void;
+}
+
+/** A field of a tool's form. Each is sent. */
+interface Field {
+  name: string;
+  label: string;
+  unit: string;
+  value: number | '';
+}
+
+const eyeFields: readonly Field[] = [
+  { name: 'observer', label: 'Eye', unit: 'm', value: 2 }, { name: 'target', label: 'Target', unit: 'm', value: 2 },
+];
+const titles: Record<Tool, string> = {
+  height: 'Height', profile: 'Profile', area: 'Area', sight: 'Line of sight', viewshed: 'Viewshed',
+};
+const hints: Record<Tool, string> = {
+  height: 'Click the terrain for its height', profile: 'Click where the profile begins, then where it ends',
+  area: 'Click the corners of the area', sight: 'Click the eye, then the target', viewshed: 'Click where the observer stands',
+};
+/** Points without which nothing is asked, and the most that there may be: a further click begins anew. */
+const fewest: Record<Tool, number> = { height: 1, profile: 2, area: 3, sight: 2, viewshed: 1 };
+const most: Record<Tool, number> = { height: 1, profile: 1000, area: 1000, sight: 2, viewshed: 1 };
+
 export class Inquiry {
   private tool: Tool = 'height';
-  private from: MapPosition | null = null;
+  private places: MapPosition[] = [];
   private asked: Question | null = null;
   private ticket = 0;
   private shownProfile: AlongLine | null = null;
+  /** Of the scene, which the answer should not cover. */
+  private spoken: Place[] = [];
 
-  constructor(
-    private readonly relief: Relief, private readonly frame: () => Frame | null, private readonly send: (m: ToWorker) => void,
-  ) {
+  private readonly relief: Relief;
+  private readonly frame: () => Frame | null;
+
+  constructor(private readonly ground: Ground) {
+    this.relief = ground.relief;
+    this.frame = () => ground.frame();
     for (const radio of document.querySelectorAll<HTMLInputElement>('input[name=tool]')) {
       radio.addEventListener('change', () => { this.choose(radio.value as Tool); });
     }
@@ -40,38 +84,89 @@ export class Inquiry {
     this.close();
     this.tool = tool;
     document.querySelector<HTMLInputElement>(`input[name=tool][value=${tool}]`)!.checked = true;
-    const hints: Record<Tool, string> = {
-      height: 'Click the terrain for its height', profile: 'Click where the profile begins, then where it ends',
-      sight: 'Click the eye, then the target', viewshed: 'Click where the observer stands',
-    };
+    this.makeForm(tool);
     if (tool === 'height' || tool === 'profile') toast(hints[tool]);
-    else this.showForm(tool, hints[tool]);
+    else this.showForm(hints[tool]);
   }
 
-  /** What a line of sight or a viewshed is asked with, before there is an answer. */
-  private showForm(tool: 'sight' | 'viewshed', hint: string): void {
-    this.write(tool === 'sight' ? 'Line of sight' : 'Viewshed', '', hint);
-    this.layOut(tool, false);
+  /** What was asked, as a link has it. */
+  get link(): AskedLink | null {
+    if (this.asked === null || (this.asked.kind === 'profile' && this.asked.isLonLat === true)) return null;
+    return { tool: this.tool, places: this.places, values: this.fields.map((f) => this.formValue(f.name)) };
   }
 
-  /** Shows the parts of the answer that a tool has. */
-  private layOut(tool: Tool, hasProfile: boolean): void {
+  /** Asks what a link asks. */
+  follow({ tool, places, values }: AskedLink): void {
+    if (tool === 'viewshed' && part('viewshed-tool').hidden) return;
+    this.choose(tool);
+    this.fields.forEach((f, i) => { if (values[i] !== undefined) this.formField(f.name).value = String(values[i]); });
+    this.places = places;
+    this.askIfEnough();
+  }
+
+  /** A profile along a line that came from elsewhere. */
+  profileAlong(line: MapPosition[], isLonLat: boolean): void {
+    this.choose('profile');
+    this.places = line;
+    const [from, ...rest] = line;
+    this.ask({ kind: 'profile', from, to: rest[rest.length - 1], via: rest.slice(0, -1), isLonLat });
+  }
+
+  /** What a tool is asked with, before there is an answer. */
+  private showForm(hint: string): void {
+    this.write(titles[this.tool], '', hint);
+    this.layOut(false);
+  }
+
+  private get fields(): readonly Field[] {
+    const { tool } = this;
+    if (tool === 'sight') return [...eyeFields, { name: 'frequency', label: 'Radio', unit: 'GHz', value: '' }];
+    if (tool === 'viewshed') return [...eyeFields, { name: 'radius', label: 'Radius', unit: 'km', value: 5 }];
+    const frame = this.frame();
+    if (tool !== 'area' || frame === null || part('viewshed-tool').hidden) return [];
+    return [{ name: 'against', label: 'Volume above', unit: signOf(frame.units.height), value: rounded(frame.facts.minHeight, 4) }];
+  }
+
+  private makeForm(tool: Tool): void {
+    part('sight-form').replaceChildren(...this.fields.map((field) => {
+      const label = document.createElement('label'), name = document.createElement('span'), box = document.createElement('span');
+      const input = document.createElement('input'), unit = document.createElement('i');
+      Object.assign(input, { name: field.name, type: 'number', step: 'any', value: String(field.value) });
+      if (tool !== 'area') input.min = '0';
+      if (field.value === '') input.placeholder = 'none';
+      label.className = 'field';
+      box.className = 'with-unit';
+      name.textContent = field.label;
+      unit.textContent = field.unit;
+      box.append(input, unit);
+      label.append(name, box);
+      return label;
+    }));
+  }
+
+  /** Shows the parts of the answer that there are. */
+  private layOut(hasProfile: boolean): void {
+    const wasHidden = part('answer').hidden;
     hide(false, 'answer');
-    hide(tool !== 'sight' && tool !== 'viewshed', 'sight-form');
-    hide(tool !== 'viewshed', 'radius-field');
-    hide(tool === 'viewshed', 'frequency-field');
+    hide(part('sight-form').childElementCount === 0, 'sight-form');
     hide(!hasProfile, 'csv', 'plot');
+    hide(true, 'seen-legend');
+    if (wasHidden && hasProfile) part<HTMLDetailsElement>('settings').open = false;
   }
 
   /** Forgets what was asked, with its marks. */
   close(): void {
-    this.from = null;
+    const hasFocus = part('answer').contains(document.activeElement);
+    this.places = [];
     this.asked = null;
     this.shownProfile = null;
+    this.spoken = [];
     ++this.ticket;
     hide(true, 'answer');
     this.relief.clearMarks();
     this.relief.setDrape(null, []);
+    if (hasFocus) this.relief.canvas.focus();
+    this.ground.changed();
   }
 
   /** A click on the terrain. */
@@ -82,21 +177,26 @@ export class Inquiry {
       toast('There is no terrain at that place');
       return;
     }
-    const at = { x: frame.mapX(place.x), y: frame.mapY(place.y) };
-    if (this.tool === 'height') {
-      this.ask({ kind: 'height', at });
-    } else if (this.tool === 'viewshed') {
-      this.ask(this.viewshedAt(at));
-    } else if (this.from === null) {
-      const { tool } = this;
+    const { places } = this;
+    if (places.length >= most[this.tool] || places.length === 0) {
       this.close();
-      this.from = at;
-      this.relief.addMark(place, colour('mark'));
-      if (tool === 'sight') this.showForm(tool, 'Now click the target');
-      else toast('Now click where it ends');
+      if (this.fields.length !== 0) this.showForm('');
+    }
+    this.places = [...this.places, { x: frame.mapX(place.x), y: frame.mapY(place.y) }];
+    if (this.askIfEnough()) return;
+    this.relief.addMark(place, colour('mark'));
+    if (this.tool === 'sight') this.showForm('Now click the target');
+    else toast(this.tool === 'area' ? 'Now click the next corner' : 'Now click where it ends');
+  }
+
+  /** Takes the last point back; what is left is asked anew. */
+  back(): void {
+    const left = this.places.slice(0, -1);
+    if (left.length >= fewest[this.tool]) {
+      this.places = left;
+      this.askIfEnough();
     } else {
-      this.ask(this.lineTo(this.from, at));
-      this.from = null;
+      this.close();
     }
   }
 
@@ -113,44 +213,65 @@ export class Inquiry {
 
   private ask(question: Question): void {
     this.asked = question;
-    this.send({ kind: 'ask', ticket: ++this.ticket, question });
+    this.ground.send({ kind: 'ask', ticket: ++this.ticket, question });
+    this.ground.changed();
   }
 
-  private lineTo(from: MapPosition, to: MapPosition): Question {
-    if (this.tool === 'profile') return { kind: 'profile', from, to };
-    const value = this.formValue;
-    return {
-      kind: 'sight', from, to,
-      request: { observerHeight: value('observer'), targetHeight: value('target'), frequency: value('frequency') * 1e9 },
-    };
+  /** Asks with the places that there are; false where they are too few. */
+  private askIfEnough(): boolean {
+    const { tool, places, formValue: value } = this;
+    if (places.length < fewest[tool]) return false;
+    const [from] = places, to = places[places.length - 1];
+    const heights = { observerHeight: value('observer'), targetHeight: value('target') };
+    switch (tool) {
+      case 'height': this.ask({ kind: 'height', at: from }); break;
+      case 'profile': this.ask({ kind: 'profile', from, to, via: places.slice(1, -1) }); break;
+      case 'area': this.ask({ kind: 'area', ring: places, against: value('against') }); break;
+      case 'sight': this.ask({ kind: 'sight', from, to, request: { ...heights, frequency: value('frequency') * 1e9 } }); break;
+      case 'viewshed': this.ask({ kind: 'viewshed', at: from, ...heights, radius: value('radius') * 1000 }); break;
+    }
+    return true;
   }
 
-  private viewshedAt(at: MapPosition): Question {
-    const value = this.formValue;
-    return {
-      kind: 'viewshed', at, observerHeight: value('observer'), targetHeight: value('target'), radius: value('radius') * 1000,
-    };
+  private formField(name: string): HTMLInputElement {
+    return part<HTMLFormElement>('sight-form').elements.namedItem(name) as HTMLInputElement;
   }
 
   private readonly formValue = (name: string): number => {
-    const field = part<HTMLFormElement>('sight-form').elements.namedItem(name) as HTMLInputElement;
-    return Math.max(0, Number(field.value) || 0);
+    const value = Number((this.formField(name) as HTMLInputElement | null)?.value ?? 0) || 0;
+    return name === 'against' ? value : Math.max(0, value);
   };
 
   /** The same places with what the form says now. */
   private askAgain(): void {
-    if (this.asked?.kind === 'sight') this.ask(this.lineTo(this.asked.from, this.asked.to));
-    if (this.asked?.kind === 'viewshed') this.ask(this.viewshedAt(this.asked.at));
+    if (this.asked !== null) this.askIfEnough();
   }
 
   private async show(answer: Answer, frame: Frame): Promise<void> {
     this.relief.clearMarks();
+    this.spoken = [];
     this.shownProfile = answer.kind === 'profile' || answer.kind === 'sight' ? answer : null;
-    this.layOut(answer.kind, this.shownProfile !== null);
+    this.layOut(this.shownProfile !== null);
     if (answer.kind === 'height') this.showHeight(answer, frame);
     if (answer.kind === 'profile') this.showProfile(answer, frame);
+    if (answer.kind === 'area') this.showArea(answer, frame);
     if (answer.kind === 'sight') this.showSight(answer, frame);
     if (answer.kind === 'viewshed') await this.showViewshed(answer, frame);
+    this.uncover();
+  }
+
+  /** Moves the camera until the answer lies over nothing that it speaks of. */
+  private uncover(): void {
+    for (let step = 0; step < 12 && this.spoken.length !== 0; ++step) {
+      const box = part('answer').getBoundingClientRect();
+      const places = this.spoken.map((p) => this.ground.project(p)).filter((p) => p.visible);
+      if (!places.some((p) => p.x > box.left && p.x < box.right + 12 && p.y > box.top - 12 && p.y < box.bottom)) return;
+      const isSheet = box.width > innerWidth / 2;
+      const [low, high] = extentOf(places.map((p) => (isSheet ? p.y : p.x)));
+      const room = isSheet ? box.top : innerWidth - box.right;
+      if (high - low > 0.8 * room) this.ground.zoom(1.25);
+      else this.ground.pan(isSheet ? 0 : -0.6, isSheet ? -0.6 : 0);
+    }
   }
 
   private write(title: string, text: string, note: string, tone = ''): void {
@@ -177,7 +298,7 @@ export class Inquiry {
     const { height, least, most } = located;
     this.tell({ x: at.x, y: at.y, height, least, most, error: certainty.error, deviation: certainty.deviation });
     if (located.state !== 'surface' || height === null) {
-      this.write('Height', located.state === 'void' ? 'No data here' : 'Outside of the terrain', where);
+      this.write('Height', located.state === 'void' ? 'A void: no data here' : 'Outside of the terrain', where);
     } else {
       const isExact = certainty.isExact || least === null || most === null || least === most;
       const [low, high] = isExact ? ['', ''] : interval(least, most, sign);
@@ -186,6 +307,7 @@ export class Inquiry {
       this.write('Height', heightText(height, isExact ? 0 : (most - least) / 2, sign), `${told}\n${where}${cost}`);
       this.relief.addMark(this.placeOf(frame, at, height), colour('mark'));
     }
+    this.spoken = [this.placeOf(frame, at, height ?? frame.baseHeight)];
     const corners = located.triangle.map((c): Place => this.placeOf(frame, c, c.height ?? height ?? frame.baseHeight));
     if (corners.length === 3) {
       this.relief.addLine([...corners, corners[0]], colour('mark'));
@@ -212,8 +334,40 @@ export class Inquiry {
     this.write('Profile', lengthText(length, lengths),
       `from ${heightText(low, d, sign)} to ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
       `down ${number(climb.down, 3)} ${sign}\n${certaintyNote(certainty, sign)}`);
-    this.drawGround(answer, frame, colour('mark'));
+    if (answer.isLonLat !== true || frame.isDegrees) this.drawGround(answer, frame, colour('mark'));
     this.plot(answer);
+  }
+
+  private showArea(answer: AnswerOf<'area'>, frame: Frame): void {
+    const { measured: { surface, empty, cut, fill, unit }, ring, against, certainty } = answer;
+    const sign = signOf(frame.units.height);
+    const area = (value: number): string => areaText(value, unit);
+    this.tell({ surface, empty, unit, cut: cut?.volume ?? null, fill: fill?.volume ?? null, against });
+    const notes = [`in plan${empty > 0 ? `, and ${area(empty)} of voids` : ''}`];
+    for (const [volume, where] of [[cut, 'above'], [fill, 'missing below']] as const) {
+      if (volume === null) continue;
+      const [low, high] = [volume.low, volume.high].map((v) => number(v, 5));
+      notes.push(`${number(volume.volume, 5)} cubic ${unit} ${where} ${number(against, 5)} ${sign}` +
+        (low === high ? '' : `, certainly ${low} to ${high}`));
+    }
+    if (cut === null) notes.push('Volumes need a service; this terrain comes from a file.');
+    else notes.push(certaintyNote(certainty, sign));
+    this.write('Area', area(surface), notes.join('\n'));
+    const border = [...ring, ring[0]].flatMap((a, i, all) => {
+      const b = all[i + 1];
+      return b === undefined ? [] : Array.from({ length: 24 }, (_, k) => this.onGround(frame, {
+        x: a.x + k / 24 * (b.x - a.x), y: a.y + k / 24 * (b.y - a.y),
+      }));
+    });
+    this.relief.addLine([...border, border[0]], colour('mark'));
+    for (const p of ring) this.relief.addMark(this.onGround(frame, p), colour('mark'), 11);
+    this.spoken = border;
+  }
+
+  /** A place on the picture's ground: for drawings alone. */
+  private onGround(frame: Frame, at: MapPosition): Place {
+    const x = frame.sceneX(at.x), y = frame.sceneY(at.y);
+    return { x, y, z: this.relief.groundAt(x, y) ?? 0 };
   }
 
   private showSight(answer: AnswerOf<'sight'>, frame: Frame): void {
@@ -251,9 +405,14 @@ export class Inquiry {
   }
 
   private async showViewshed(answer: AnswerOf<'viewshed'>, frame: Frame): Promise<void> {
-    const { viewshed, at } = answer;
-    this.relief.setDrape(await createImageBitmap(viewshed.picture), viewshed.window);
-    this.write('Viewshed', 'Green is seen', `${metres(answer.radius)} around ${coordinates(at.x, at.y, frame.isDegrees)}`, 'good');
+    const { viewshed, at, observerHeight, targetHeight } = answer;
+    const place = this.onGround(frame, at);
+    this.relief.addMark(place, colour('mark'), 17);
+    this.spoken = [place];
+    this.relief.setDrape(await recoloured(viewshed.picture), viewshed.window);
+    hide(false, 'seen-legend');
+    this.write('Viewshed', metres(answer.radius),
+      `around ${coordinates(at.x, at.y, frame.isDegrees)}: the eye ${metres(observerHeight)}, what is looked for ${metres(targetHeight)} above ground`);
   }
 
   private placeOf(frame: Frame, at: MapPosition, height: number): Place {
@@ -268,6 +427,7 @@ export class Inquiry {
 
   private drawGround(answer: AlongLine, frame: Frame, lineColour: string): void {
     const placeOf = (s: Station): Place => this.placeOf(frame, s, s.height as number);
+    this.spoken = runsOf(answer.profile.stations).flatMap((run) => run.map(placeOf));
     for (const run of runsOf(answer.profile.stations)) this.relief.addLine(run.map(placeOf), lineColour);
     const known = answer.profile.stations.filter((s) => s.height !== null);
     for (const s of [known[0], known[known.length - 1]]) if (s !== undefined) this.relief.addMark(placeOf(s), colour('mark'), 11);
@@ -354,4 +514,11 @@ function clearanceNote(min: number, max: number): string {
   if (min >= 0) return Number.isFinite(max) ? `clears the ground by ${told(min, max)}` : `clears the ground by ${number(min, 3)} m or more`;
   if (max < 0) return `is blocked by ${told(-max, -min)}`;
   return `is between ${number(-min, 3)} m below and ${Number.isFinite(max) ? `${number(max, 3)} m` : 'any height'} above the ground`;
+}
+
+/** An area in squares of a unit; of metres in the usual ones. */
+export function areaText(value: number, unit: string): string {
+  if (unit !== 'metre') return `${number(value, 4)} square ${unit}`;
+  if (value >= 1e6) return `${number(value / 1e6, 4)} km\u00b2`;
+  return value >= 1e5 ? `${number(value / 1e4, 4)} ha` : `${value >= 1e4 ? count(value) : number(value, 4)} m\u00b2`;
 }

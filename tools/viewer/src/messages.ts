@@ -24,10 +24,30 @@ export type ToWorker =
 
 export type Question =
   | { kind: 'height'; at: MapPosition }
-  | { kind: 'profile'; from: MapPosition; to: MapPosition }
+  /** `via`: corners of the line between its ends. `isLonLat`: degrees of WGS 84, whatever the terrain's CRS. */
+  | { kind: 'profile'; from: MapPosition; to: MapPosition; via?: MapPosition[]; isLonLat?: boolean }
+  /** A polygon, and the height from which volumes are told. */
+  | { kind: 'area'; ring: MapPosition[]; against: number }
   | { kind: 'sight'; from: MapPosition; to: MapPosition; request: SightRequest }
   /** Heights above ground and the radius in metres. */
   | { kind: 'viewshed'; at: MapPosition; observerHeight: number; targetHeight: number; radius: number };
+
+/** Volumes of a polygon as the service tells them, in its unit's cubes: what the TIN has, and what the source has at least and at most. */
+export interface Volume {
+  volume: number;
+  low: number;
+  high: number;
+}
+
+export interface Measured {
+  /** In squares of `unit`: with a surface, and void. */
+  surface: number;
+  empty: number;
+  /** Null where nobody can be asked. */
+  cut: Volume | null;
+  fill: Volume | null;
+  unit: string;
+}
 
 export interface Viewshed {
   /** A picture of what is seen. */
@@ -52,6 +72,7 @@ export type QuestionOf<K extends Question['kind']> = Extract<Question, { kind: K
 export type Answer =
   | QuestionOf<'height'> & { located: Located; certainty: Certainty; cost?: string }
   | QuestionOf<'profile'> & { profile: Profile; certainty: Certainty }
+  | QuestionOf<'area'> & { measured: Measured; certainty: Certainty }
   | QuestionOf<'sight'> & { sight: Sight; profile: Profile; certainty: Certainty }
   | QuestionOf<'viewshed'> & { viewshed: Viewshed };
 
@@ -79,8 +100,15 @@ export interface Status extends Progress {
   certified: Certified;
 }
 
+/** What a terrain tells of itself; empty: nothing. */
+export interface About {
+  attribution: string;
+  /** The name of the CRS of its positions. */
+  crs: string;
+}
+
 export type FromWorker =
-  | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; name: string }
+  | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; name: string; about: About }
   | { kind: 'mesh'; mesh: DrawnMesh; status: Status }
   | { kind: 'edges'; edges: Uint32Array }
   | { kind: 'status'; status: Status }

@@ -2,7 +2,7 @@
 //
 // The card with settings and facts: reads and writes Settings, shows Status.
 import type { Certificate } from 'ptin-decoder';
-import { bound, bytes, count, number, roundBelow, rounded, signOf } from './format';
+import { bound, bytes, count, height as heightText, number, roundBelow, rounded, signOf } from './format';
 import type { Frame } from './frame';
 import type { Status } from './messages';
 import { input, part } from './page';
@@ -33,8 +33,6 @@ export class Panel {
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => { this.changed('error'); }, 180);
     });
-    part('fold').addEventListener('click', () => { this.fold(!part('card').classList.contains('folded')); });
-    if (matchMedia('(max-width: 700px)').matches) this.fold(true);
     this.show();
   }
 
@@ -44,8 +42,10 @@ export class Panel {
     this.changed(key);
   }
 
-  setFrame(frame: Frame, name: string, subtitle: string): void {
+  /** @param attribution  Whom to name; empty: nobody told. */
+  setFrame(frame: Frame, name: string, subtitle: string, attribution: string): void {
     this.frame = frame;
+    part('attribution').textContent = attribution;
     part('title').textContent = name;
     document.title = name;
     part('subtitle').textContent = subtitle;
@@ -55,6 +55,20 @@ export class Panel {
   /** An interval that gives the relief some twenty lines. */
   get usualInterval(): number {
     return roundBelow(Math.max(this.relief, 1e-3) / 20);
+  }
+
+  /** Where the pointer or the cross-hair is, with the height there as far as the mesh is certified; null: nowhere. */
+  showPlace(place: { where: string; height: number | null; slack: number | null } | null): void {
+    if (place === null) {
+      part('place').textContent = '';
+      return;
+    }
+    const { where, height, slack } = place;
+    const told = document.createElement('b');
+    told.textContent = height === null ? 'No terrain here'
+      : slack === null ? `about ${heightText(height, this.relief / 100, this.sign)}`
+      : heightText(height, slack, this.sign) + (slack > 0 ? ` \u00b1 ${bound(slack, 2)} ${this.sign}` : '');
+    part('place').replaceChildren(told, where);
   }
 
   /** @param certificate  Of all that is in sight, or `everywhere`; null where nothing is known of a part of it. */
@@ -107,11 +121,6 @@ export class Panel {
   private placeOf(error: number): number {
     if (error === 0) return 100;
     return Math.max(0, Math.min(99, Math.round(99 * Math.log(this.relief / 4 / error) / Math.log(errorSpan))));
-  }
-
-  private fold(on: boolean): void {
-    part('card').classList.toggle('folded', on);
-    part('fold').setAttribute('aria-expanded', String(!on));
   }
 
   private show(): void {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Camera and settings in the address, behind #: whoever opens it sees the same.
+import type { MapPosition } from 'ptin-decoder';
 import { rounded } from './format';
+import type { Tool } from './inquiry';
 import type { Shading } from './relief';
 import type { Pose } from './view';
 
@@ -21,6 +23,35 @@ export interface Settings {
 export const defaults: Settings = {
   shading: 'height', wireframe: false, exaggeration: 1, azimuth: 315, altitude: 42, interval: 0, error: 0,
 };
+
+/** What was asked: a tool, places of the map, and what its form said. */
+export interface AskedLink {
+  tool: Tool;
+  places: MapPosition[];
+  values: number[];
+}
+
+const tools: readonly Tool[] = ['height', 'profile', 'area', 'sight', 'viewshed'];
+/** More corners make no address. */
+const mostPlaces = 100;
+
+/** What was asked as a part of the hash; empty for nothing, and for lines too long for an address. */
+export function askedToHash(asked: AskedLink | null): string {
+  if (asked === null || asked.places.length > mostPlaces) return '';
+  const places = asked.places.map((p) => `${rounded(p.x, 12)},${rounded(p.y, 12)}`).join(';');
+  return `&ask=${asked.tool}:${places}` + (asked.values.length === 0 ? '' : `&with=${asked.values.join(',')}`);
+}
+
+/** What a hash asks; null for nothing, or nothing that can be read. */
+export function askedInHash(hash: string): AskedLink | null {
+  const parts = new URLSearchParams(hash.replace(/^#/, ''));
+  const [name, text = ''] = (parts.get('ask') ?? '').split(':');
+  const tool = tools.find((t) => t === name);
+  const places = text.split(';').map((pair) => pair.split(',').map(Number));
+  if (tool === undefined || places.length > mostPlaces || places.some((p) => p.length !== 2 || !p.every(Number.isFinite))) return null;
+  const values = (parts.get('with') ?? '').split(',').filter((v) => v !== '').map(Number);
+  return { tool, places: places.map(([x, y]) => ({ x, y })), values: values.every((v) => v >= 0 && v < 1e12) ? values : [] };
+}
 
 export function toHash(pose: Pose | null, settings: Settings): string {
   const parts = new URLSearchParams();
@@ -45,7 +76,7 @@ export function fromHash(hash: string): { pose: Pose | null; settings: Settings 
   const shading = parts.get('shading');
   if (shading === 'height' || shading === 'slope' || shading === 'shade') settings.shading = shading;
   settings.wireframe = parts.get('wireframe') === '1';
-  const ranges = { exaggeration: [0.5, 10], azimuth: [0, 360], altitude: [5, 90], interval: [0, 1e9], error: [0, 1e9] } as const;
+  const ranges = { exaggeration: [0.5, 20], azimuth: [0, 360], altitude: [5, 90], interval: [0, 1e9], error: [0, 1e9] } as const;
   for (const [key, [low, high]] of Object.entries(ranges) as Array<[keyof typeof ranges, readonly [number, number]]>) {
     const value = Number(parts.get(key) ?? NaN);
     if (value >= low && value <= high) settings[key] = value;

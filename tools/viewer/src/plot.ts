@@ -82,9 +82,11 @@ function drawAxes(svg: SVGSVGElement, a: {
   }
   const metre = a.lengths.metres ?? 1;
   const metres = a.length * metre;
-  const step = roundBelow(metres / 3);
+  // As many as do not touch.
+  const step = roundBelow(metres / Math.max(1, Math.min(3, Math.floor((a.width - left - right) / 85))));
+  const isNarrow = (a.width - left - right) * step / metres < 60;
   const inKilometres = a.lengths.metres !== null && metres >= 2000;
-  for (let d = 0; d <= metres; d += step) {
+  for (let d = isNarrow ? step : 0; d <= metres; d += isNarrow ? 2 * step : step) {
     const label = inKilometres ? `${rounded(d / 1000, 4)} km` : `${rounded(d, 4)}${a.lengths.metres === null ? '' : ' m'}`;
     svg.append(element('text', { x: a.x(d / metre), y: a.height - 7, 'text-anchor': d === 0 ? 'start' : 'middle' }, label));
   }

@@ -4,17 +4,23 @@
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import {
-  type Certified, type Collection, DecodeError, type Decoder, mostServings, Problem, Received, type Wanted, widened,
+  type Certified, certifiedAt, type Collection, DecodeError, type Decoder, mostServings, Problem, Received, type Wanted, widened,
 } from 'ptin-decoder';
 import { rounded } from './format';
 import type { Frame } from './frame';
 import type { Answer, Progress, Question } from './messages';
-import { type Service, costOf } from './service';
+import { type Service, costOf, millisecondsOf } from './service';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
 const firstBytes = 64 * 1024;
 const laterBytes = 256 * 1024;
 const leastBytes = 32 * 1024;
+/** Memory of a question for each vertex that is held and sent, measured: 580. */
+const bytesOfVertex = 700;
+/** Of the time that the service computes, what an answer should take; what it may then differ is left. */
+const shareOfTime = 0.15;
+/** Times finer than what is there that one answer may be, and least, so that there is an end. */
+const mostFiner = 5, leastFiner = 1.4;
 /** Milliseconds before a service that failed is asked again. */
 const firstWait = 1000, longestWait = 20000;
 
@@ -36,6 +42,8 @@ export class ServedView implements TerrainView {
   private isTooMuch = false;
   private bytes = 0;
   private cost: string | undefined;
+  /** Milliseconds that the last answer took the service; null: it does not tell. */
+  private lastTook: number | null = null;
   private isLoading = true;
   /** Why nothing comes at the moment. */
   private waitsFor: string | undefined;
@@ -46,13 +54,17 @@ export class ServedView implements TerrainView {
     private readonly mostVertices: number, private readonly events: ViewEvents,
   ) {
     this.shown = this.received = new Received(module);
+    const { question_memory: memory = Infinity, held_vertices: held = Infinity } = collection.limits ?? {};
+    this.mostHeld = Math.min(0.9 * held, memory / bytesOfVertex);
   }
 
   get name(): string { return this.collection.title; }
+  get attribution(): string { return this.collection.attribution ?? ''; }
   get decoder(): Decoder { return this.shown.decoder; }
   get certified(): Certified { return this.shown.certified; }
   get progress(): Progress {
-    const heldBy = this.isTooMuch ? 'service' : this.coarser > 1 ? 'vertices' : undefined;
+    const isService = this.isTooMuch || this.mostHeld < this.mostVertices;
+    const heldBy = this.isTooMuch || this.coarser > 1 ? (isService ? 'service' : 'vertices') : undefined;
     return {
       bytes: this.bytes, bytesInAll: 0, heldBy, waitsFor: this.waitsFor, cost: this.cost,
       state: heldBy !== undefined ? 'held' : this.isLoading ? 'loading' : 'complete',
@@ -78,7 +90,7 @@ export class ServedView implements TerrainView {
 
   async run(): Promise<void> {
     const { bounds, heights } = this.collection;
-    const first: Wanted = { window: bounds, error: Math.max((heights[1] - heights[0]) / 100, 1e-6) };
+    const first: Wanted = { window: bounds, error: Math.max((heights[1] - heights[0]) / 50, 1e-6) };
     while (!this.received.decoder.hasMesh) {
       await this.bring(first, firstBytes);
       if (this.isTooMuch && first.error < heights[1] - heights[0]) first.error *= 2;
@@ -105,7 +117,20 @@ export class ServedView implements TerrainView {
   private nextWanted(): Wanted | undefined {
     return this.wanted
       .map((w): Wanted => ({ window: w.window, error: Math.max(w.error * this.coarser, this.leastError) }))
-      .find((w) => !this.received.covers(w));
+      .map((w) => this.rung(w)).find((w) => !this.received.covers(w));
+  }
+
+  /**
+   * What is asked of a part on the way to what is wanted. The service makes all of the mesh that a receiver has for each answer, and
+   * takes the longer the finer it is: so that it need never refuse, one answer is not much finer than what is there.
+   */
+  private rung(wanted: Wanted): Wanted {
+    const { computing } = this.collection.limits ?? {};
+    if (this.lastTook === null || computing === undefined || this.received.covers(wanted)) return wanted;
+    const [west, south, east, north] = wanted.window;
+    const there = certifiedAt(this.received.certified, [{ x: west, y: south }, { x: east, y: north }]);
+    const finer = Math.max(leastFiner, Math.min(mostFiner, shareOfTime * computing / Math.max(1, this.lastTook)));
+    return there === null ? wanted : { window: wanted.window, error: Math.max(wanted.error, there.error / finer) };
   }
 
   private startAnew(): void {
@@ -157,6 +182,9 @@ export class ServedView implements TerrainView {
     if (!(error instanceof Problem)) return false;
     if (error.status === 409) {
       this.startAnew();
+    } else if (error.status === 503 && error.limit === 'computing') {
+      this.lastTook = this.collection.limits?.computing ?? null;
+      this.askForLess(wanted, to);
     } else if (error.status !== 413) {
       return false;
     } else if (error.limit === 'have' || error.limit === 'held_vertices') {
@@ -188,6 +216,7 @@ export class ServedView implements TerrainView {
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {
     const response = await this.service.stream(to.asking(wanted, mostBytes));
     this.cost = costOf(response);
+    this.lastTook = millisecondsOf(response);
     let { bytes } = to;
     for await (const _ of to.take(wanted, response)) {
       // Frames come quicker than anybody looks.

@@ -5,8 +5,14 @@ import { type Collection, collectionAt, type MapPosition, opened, Problem, type 
 import { count, number } from './format';
 import type { Frame } from './frame';
 import type { PointState, Profile, Sight, SightPoint } from './answers';
-import type { Answer, Certainty, Question, QuestionOf } from './messages';
-import { stationsOf } from './stations';
+import type { Answer, Certainty, Question, QuestionOf, Volume } from './messages';
+import { cornersOf, stationsOf } from './stations';
+
+/** Milliseconds that an answer says it took; null: it does not say. */
+export function millisecondsOf(response: Response): number | null {
+  const took = /\bdur=([\d.]+)/.exec(response.headers.get('Server-Timing') ?? '');
+  return took === null ? null : Number(took[1]);
+}
 
 /** What an answer says that it cost: pages read, and time. */
 export function costOf(response: Response): string {
@@ -36,6 +42,7 @@ export class Service {
       case 'height': return this.height(question);
       case 'profile': return this.profile(question, frame);
       case 'sight': return this.sight(question, frame);
+      case 'area': return this.area(question);
       case 'viewshed': return this.viewshed(question, frame);
     }
   }
@@ -54,7 +61,8 @@ export class Service {
   }
 
   private async profile(question: QuestionOf<'profile'>, frame: Frame): Promise<Answer> {
-    const { json } = await this.asked('profile', { coords: lineText(question) });
+    const crs = question.isLonLat === true && !frame.isDegrees ? { crs: 'http://www.opengis.net/def/crs/OGC/1.3/CRS84' } : {};
+    const { json } = await this.asked('profile', { coords: lineText(question), ...crs });
     return { ...question, profile: profileIn(json, frame), certainty: certaintyOf(json) };
   }
 
@@ -67,6 +75,31 @@ export class Service {
     return {
       ...question, profile: profileIn(along.json, frame), sight: sightIn((json.pairs as Json[])[0]), certainty: certaintyOf(json),
     };
+  }
+
+  private async area(question: QuestionOf<'area'>): Promise<Answer> {
+    const ring = [...question.ring, question.ring[0]].map((p) => `${p.x} ${p.y}`).join(', ');
+    const { json } = await this.asked('volume', { against: question.against, coords: `POLYGON((${ring}))` });
+    const area = json.area as { surface: number; void: number };
+    const units = json.units as { ground: string };
+    return {
+      ...question, certainty: certaintyOf(json),
+      measured: {
+        surface: area.surface, empty: area.void, cut: json.cut as Volume, fill: json.fill as Volume, unit: units.ground,
+      },
+    };
+  }
+
+  /** The highest vertex of a window, where it is one: a point on the window's border is the side of something higher. */
+  async highest(window: Window): Promise<(MapPosition & { height: number }) | null> {
+    const response = await this.answered('highest', 'geojson', { bbox: window.join(','), listed: 1 });
+    interface Feature { geometry: { coordinates: [number, number] }; properties: { at_vertex: boolean; height: number } }
+    const [found] = (await response.json() as { features: Feature[] }).features;
+    if (found === undefined || !found.properties.at_vertex) return null;
+    const [x, y] = found.geometry.coordinates;
+    const edge = 1e-9 * Math.max(window[2] - window[0], window[3] - window[1]);
+    const isWithin = x > window[0] + edge && x < window[2] - edge && y > window[1] + edge && y < window[3] - edge;
+    return isWithin ? { x, y, height: found.properties.height } : null;
   }
 
   private async viewshed(question: QuestionOf<'viewshed'>, frame: Frame): Promise<Answer> {
@@ -82,7 +115,7 @@ export class Service {
   }
 
   private answered(question: string, format: string, query: Json): Promise<Response> {
-    const parameters = Object.entries({ ...query, crs: 'native', f: format }).map(([k, v]): [string, string] => [k, String(v)]);
+    const parameters = Object.entries({ crs: 'native', ...query, f: format }).map(([k, v]): [string, string] => [k, String(v)]);
     return opened(`${this.base}/${question}?${new URLSearchParams(parameters)}`);
   }
 
@@ -98,8 +131,8 @@ function pointText(at: MapPosition): string {
   return `POINT(${at.x} ${at.y})`;
 }
 
-function lineText({ from, to }: { from: MapPosition; to: MapPosition }): string {
-  return `LINESTRING(${from.x} ${from.y}, ${to.x} ${to.y})`;
+function lineText(line: Parameters<typeof cornersOf>[0]): string {
+  return `LINESTRING(${cornersOf(line).map((p) => `${p.x} ${p.y}`).join(', ')})`;
 }
 
 /** What an answer is certified for; what the service does not know, or does not tell, is null. */

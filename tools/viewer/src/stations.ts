@@ -2,7 +2,28 @@
 //
 // The points of a profile as the engine has them, as stretches with gaps between: for drawings and in words.
 import type { MapPosition } from 'ptin-decoder';
-import type { PointState, Station } from './answers';
+import type { Profile, PointState, Station } from './answers';
+
+/** All corners of a line. */
+export function cornersOf({ from, to, via = [] }: { from: MapPosition; to: MapPosition; via?: readonly MapPosition[] }): MapPosition[] {
+  return [from, ...via, to];
+}
+
+/** Profiles one behind the other as one: where the next begins the last has ended. */
+export function joined(legs: ReadonlyArray<Omit<Profile, 'lengths'>>): Omit<Profile, 'lengths'> {
+  const stations: Station[] = [];
+  let length = 0;
+  legs.forEach((leg, i) => {
+    // A leg that ends in a gap tells nothing of its end.
+    const before = stations[stations.length - 1];
+    const hasEnded = before !== undefined && before.height !== null && before.distance < length - 1e-9 * length;
+    if (hasEnded) stations.push({ ...before, height: null });
+    const isSame = i > 0 && before?.height !== null && leg.stations[0]?.distance === 0 && leg.stations[0].height !== null && !hasEnded;
+    for (const s of isSame ? leg.stations.slice(1) : leg.stations) stations.push({ ...s, distance: s.distance + length });
+    length += leg.length;
+  });
+  return { stations, length };
+}
 
 /** A gap is a point without a height; one at the end tells nothing. */
 export function stationsOf(points: ReadonlyArray<MapPosition & { distance: number; height: number | null; state: PointState }>): Station[] {

@@ -7,6 +7,8 @@ import type { Answer, Progress, Question } from './messages';
 
 export interface TerrainView {
   readonly name: string;
+  /** Whom to name; empty: nobody told. */
+  readonly attribution: string;
   /** Whose mesh is shown. */
   readonly decoder: Decoder;
   /** The certificates of the mesh of `decoder`. */

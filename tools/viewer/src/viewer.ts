@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import { type Certificate, certifiedWithin, holds } from 'ptin-decoder';
+import { type Certificate, certifiedAt, certifiedWithin, holds, type Problem } from 'ptin-decoder';
+import { Vector3 } from 'three';
 import { scaleAt } from './earth';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
 import { Inquiry } from './inquiry';
+import { lineInFile } from './lines_in_file';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
+import { Overlay } from './overlay';
 import { Panel } from './panel';
-import { type Settings, fromHash, toHash } from './permalink';
-import { Relief } from './relief';
+import { Peaks } from './peaks';
+import { askedInHash, askedToHash, type Settings, fromHash, toHash } from './permalink';
+import { savePicture } from './picture_export';
+import type { Projected } from './projected';
+import { type Place, Relief } from './relief';
+import { Service } from './service';
 import { View } from './view';
 
 interface Boot {
@@ -31,6 +38,7 @@ class Viewer {
   private readonly view: View;
   private readonly panel: Panel;
   private readonly inquiry: Inquiry;
+  private readonly overlay: Overlay;
   private readonly worker: Worker;
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
@@ -42,6 +50,7 @@ class Viewer {
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
+  private attribution = '';
 
   constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
@@ -50,7 +59,8 @@ class Viewer {
     this.relief = new Relief(canvas);
     this.view = new View(this.relief.camera, canvas);
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
-    this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
+    this.inquiry = this.madeInquiry();
+    this.overlay = this.madeOverlay();
     part('viewshed-tool').hidden = !this.isServed;
     for (const key of Object.keys(this.panel.settings) as Array<keyof Settings>) this.apply(key);
     this.relief.beforeDrawing = () => this.beforeDrawing();
@@ -62,6 +72,37 @@ class Viewer {
     for (const message of boot.early.splice(0)) this.take(message);
   }
 
+  private madeInquiry(): Inquiry {
+    return new Inquiry({
+      relief: this.relief, frame: () => this.frame, send: (m) => { this.send(m); }, project: (place) => this.project(place),
+      pan: (right, ahead) => { this.view.pan(right, ahead); this.moved(); }, zoom: (factor) => { this.view.zoom(factor); this.moved(); },
+      changed: () => { this.keepLink(); },
+    });
+  }
+
+  private madeOverlay(): Overlay {
+    const { source } = this.boot;
+    const service = source?.kind === 'collection' ? new Service(source.service, source.id) : null;
+    return new Overlay({
+      canvas: this.relief.canvas, frame: () => this.frame, project: (place) => this.project(place),
+      pick: (x, y) => this.relief.pick(x, y), depth: (place) => this.depth(place),
+      window: () => this.view.wanted(this.relief.canvas.clientHeight, tolerance)[0]?.window ?? null,
+      interval: () => this.panel.settings.interval,
+    }, service === null ? null : new Peaks((window) => service.highest(window)));
+  }
+
+  /** Where a place of the scene is in the picture. */
+  private project(place: Place): Projected {
+    const { camera, canvas: { clientWidth, clientHeight } } = this.relief;
+    const at = new Vector3(place.x, place.y, place.z * this.view.exaggeration).project(camera);
+    const isWithin = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1;
+    return { x: (at.x + 1) / 2 * clientWidth, y: (1 - at.y) / 2 * clientHeight, visible: isWithin };
+  }
+
+  private depth(place: Place): number {
+    return this.relief.camera.position.distanceTo(new Vector3(place.x, place.y, place.z * this.view.exaggeration));
+  }
+
   private send(message: ToWorker): void {
     this.worker.postMessage(message);
   }
@@ -71,6 +112,7 @@ class Viewer {
       case 'terrain': this.introduce(message); break;
       case 'mesh':
         this.relief.setMesh(message.mesh);
+        this.overlay.setMesh(message.mesh);
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);
         break;
@@ -90,20 +132,23 @@ class Viewer {
   }
 
   private introduce(message: Extract<FromWorker, { kind: 'terrain' }>): void {
-    const { facts, units, earth } = message;
+    const { facts, units, earth, about } = message;
     const frame = this.frame = new Frame(facts, units, earth);
     this.relief.setFrame(frame);
     const size = earth.size === null ? 'size not known' : `${metres(earth.size[0])} \u00d7 ${metres(earth.size[1])}`;
     const unknown = units.height !== 'unknown' ? ''
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
     part('scale').hidden = earth.lengths.metres === null;
-    this.panel.setFrame(frame, message.name, `${size}${unknown}`);
+    this.panel.setFrame(frame, message.name, `${size}${about.crs === '' ? '' : ` \u00b7 ${about.crs}`}${unknown}`, about.attribution);
+    this.attribution = about.attribution;
     const { pose } = fromHash(location.hash);
     const { width, height } = this.relief.canvas.getBoundingClientRect();
     const card = part('card').getBoundingClientRect();
     this.view.setFrame(frame, width, card.width < width / 2 && width > height ? card.right : 0);
     if (pose !== null) this.view.pose(pose);
     this.moved();
+    const asked = askedInHash(location.hash);
+    if (asked !== null) this.inquiry.follow(asked);
   }
 
   private show(status: Status): void {
@@ -151,6 +196,7 @@ class Viewer {
     const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
     this.relief.hazeFrom = 1.1 * distance;
     this.showScale(distance);
+    this.overlay.drawn();
     if (this.status !== null) {
       const before = this.status.certificate;
       const now = this.status.certificate = this.inSight(this.status);
@@ -181,7 +227,7 @@ class Viewer {
 
   /** The address of what is shown. */
   private get address(): string {
-    return `${location.pathname}${location.search}#${toHash(this.view.current, this.panel.settings)}`;
+    return `${location.pathname}${location.search}#${toHash(this.view.current, this.panel.settings)}${askedToHash(this.inquiry.link)}`;
   }
 
   /** How long a line across the picture is where the camera looks: over ground, which the picture stretches away from its middle. */
@@ -218,6 +264,16 @@ class Viewer {
     });
     part('home').addEventListener('click', () => { this.home(); });
     part('link').addEventListener('click', () => { void this.copyLink(); });
+    part('picture').addEventListener('click', () => { this.savePicture(); });
+    part<HTMLAnchorElement>('whole').addEventListener('focus', () => { this.linkWhole(); });
+    part<HTMLAnchorElement>('whole').addEventListener('pointerenter', () => { this.linkWhole(); });
+    this.linkWhole();
+    addEventListener('dragover', (event) => { event.preventDefault(); });
+    addEventListener('drop', (event) => {
+      event.preventDefault();
+      const file = event.dataTransfer?.files[0];
+      if (file !== undefined) void this.profileOf(file);
+    });
     part('help').addEventListener('click', () => { part<HTMLDialogElement>('keys').showModal(); });
     part('trouble-close').addEventListener('click', () => { part('trouble').hidden = true; });
   }
@@ -231,17 +287,19 @@ class Viewer {
     canvas.addEventListener('pointerup', (e) => {
       const isClick = pressed !== null && Math.hypot(e.clientX - pressed.x, e.clientY - pressed.y) < 5;
       pressed = null;
+      part('crosshair').hidden = true;
       if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
     });
     // A place costs a drawing of everything: it is told where the pointer rests.
     canvas.addEventListener('pointermove', (e) => {
       clearTimeout(this.placeTimer);
+      part('crosshair').hidden = true;
       if (e.pointerType === 'touch' || e.buttons !== 0) return;
       this.placeTimer = window.setTimeout(() => { this.tellPlace(e.clientX, e.clientY); }, 160);
     });
     canvas.addEventListener('pointerleave', () => {
       clearTimeout(this.placeTimer);
-      part('place').textContent = '';
+      this.panel.showPlace(null);
     });
     // A ring shows whom the keys belong to, when one came here by them; shortcuts work without it.
     canvas.addEventListener('focus', () => { canvas.classList.toggle('ringed', canvas.matches(':focus-visible')); });
@@ -250,9 +308,55 @@ class Viewer {
 
   private tellPlace(x: number, y: number): void {
     if (this.frame === null || this.status === null) return;
+    const { frame, status } = this;
     const place = this.relief.pick(x, y);
-    part('place').textContent = place === null ? ''
-      : coordinates(this.frame.mapX(place.x), this.frame.mapY(place.y), this.frame.isDegrees);
+    if (place === null) {
+      this.panel.showPlace({ where: '', height: null, slack: null });
+      return;
+    }
+    const at = { x: frame.mapX(place.x), y: frame.mapY(place.y) };
+    const certificate = certifiedAt(status.certified, [at]);
+    this.panel.showPlace({
+      where: coordinates(at.x, at.y, frame.isDegrees), height: frame.heightAt(place.z), slack: certificate?.deviation ?? null,
+    });
+  }
+
+  /** Puts the cross-hair of the keys into the middle, and tells what is there. */
+  private aim(): void {
+    part('crosshair').hidden = false;
+    clearTimeout(this.placeTimer);
+    const { clientWidth, clientHeight } = this.relief.canvas;
+    this.placeTimer = window.setTimeout(() => { this.tellPlace(clientWidth / 2, clientHeight / 2); }, 160);
+  }
+
+  /** In a frame: the link to the same view with its card. */
+  private linkWhole(): void {
+    const query = new URLSearchParams(location.search);
+    query.delete('embed');
+    part<HTMLAnchorElement>('whole').href = `${location.pathname}?${query}${location.hash}`;
+  }
+
+  private savePicture(): void {
+    const { canvas } = this.relief;
+    this.relief.draw();
+    const { labels } = this.overlay;
+    requestAnimationFrame(() => {
+      const scale = part('scale');
+      savePicture(canvas, {
+        title: part('title').textContent ?? '', attribution: this.attribution, labels,
+        scale: scale.hidden ? null : { width: scale.querySelector('i')!.clientWidth, text: scale.querySelector('span')!.textContent ?? '' },
+      });
+    });
+    toast('The picture is saved');
+  }
+
+  private async profileOf(file: File): Promise<void> {
+    try {
+      const { line, isLonLat } = lineInFile(file.name, await file.text());
+      this.inquiry.profileAlong(line, isLonLat);
+    } catch (error) {
+      toast((error as Problem).message);
+    }
   }
 
   private home(): void {
@@ -279,7 +383,8 @@ class Viewer {
     if (action === undefined) return;
     event.preventDefault();
     action();
-    if (!['?', 'Enter', 'Escape'].includes(event.key)) this.moved();
+    if (/^(Arrow|Enter|Page|Back)|^[-+=,.]$/.test(event.key)) this.aim();
+    if (!['?', 'Enter', 'Escape', 'Backspace'].includes(event.key)) this.moved();
   }
 
   private readonly actions: Record<string, () => void> = {
@@ -304,6 +409,9 @@ class Viewer {
     p: () => { this.inquiry.choose('profile'); },
     s: () => { this.inquiry.choose('sight'); },
     v: () => { if (this.isServed) this.inquiry.choose('viewshed'); },
+    a: () => { this.inquiry.choose('area'); },
+    e: () => { this.savePicture(); },
+    Backspace: () => { this.inquiry.back(); },
     l: () => { void this.copyLink(); },
     '?': () => { part<HTMLDialogElement>('keys').showModal(); },
     Enter: () => {
@@ -325,8 +433,10 @@ function welcome(boot: Boot): void {
     const stream = String(new FormData(form).get('stream')).trim();
     if (stream !== '') location.search = `?${new URLSearchParams({ stream })}`;
   });
+  let isOpen = false;
   const openFile = (file: File | undefined): void => {
-    if (file === undefined) return;
+    if (file === undefined || isOpen) return;
+    isOpen = true;
     box.hidden = true;
     part('card').hidden = part('tools').hidden = false;
     boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
@@ -340,7 +450,7 @@ function welcome(boot: Boot): void {
   addEventListener('drop', (event) => {
     event.preventDefault();
     openFile(event.dataTransfer?.files[0]);
-  }, { once: true });
+  });
 }
 
 function start(boot: Boot): void {
@@ -351,6 +461,7 @@ function start(boot: Boot): void {
   }
 }
 
+if (new URLSearchParams(location.search).has('embed')) document.body.classList.add('embed');
 const boot = (window as unknown as { ptinBoot: Boot }).ptinBoot;
 if (location.protocol === 'file:') {
   // The page itself has told it (index.html).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Worker: opens a terrain, hands the page meshes to draw, and passes its questions on.
-import { type Certified, DecodeError, type Decoder, HostedBytes, Problem, toldBy } from 'ptin-decoder';
+import { type Certified, DecodeError, type Decoder, HostedBytes, mapCrsOf, Problem, toldBy } from 'ptin-decoder';
 import { drawnMesh, surfaceEdges } from './drawn_mesh';
 import { earthOf } from './earth';
 import { moduleAt } from './fetching';
@@ -68,14 +68,16 @@ class Session {
 
   /** Tells the page what terrain it is, once; null until there is a mesh. */
   private introduce(): Frame | null {
-    const { decoder, name } = this.view;
+    const { decoder } = this.view;
     if (this.frame !== null || !decoder.hasMesh) return this.frame;
     const { facts } = decoder;
     const told = toldBy(decoder.metadata);
     decoder.describe(told.ground);
     const earth = earthOf(decoder, told);
     this.frame = new Frame(facts, told.units, earth);
-    say({ kind: 'terrain', facts, units: told.units, earth, name });
+    const { name, attribution } = this.view;
+    const crs = /"([^"]*)"/.exec(mapCrsOf(told.crs ?? ''))?.[1] ?? '';
+    say({ kind: 'terrain', facts, units: told.units, earth, name: told.title || name, about: { attribution: told.attribution || attribution, crs } });
     return this.frame;
   }
 

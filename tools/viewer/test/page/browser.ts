@@ -161,7 +161,8 @@ export async function colours(page: Page): Promise<number> {
 export const text = (page: Page, selector: string): Promise<string> => page.locator(selector).innerText();
 /** The whole number that a part of the page tells. */
 export const counted = async (page: Page, selector: string): Promise<number> =>
-  Number((await text(page, selector)).replace(/[^0-9]/g, ''));
+  // Of parts that are folded away, too.
+  Number((await page.locator(selector).textContent() ?? '').replace(/[^0-9]/g, ''));
 export const appears = (page: Page, selector: string): Promise<unknown> => page.waitForSelector(`${selector}:not([hidden])`);
 /** The numbers of the answer as they came. */
 export const told = (page: Page): Promise<Record<string, string>> =>
@@ -211,5 +212,15 @@ export function compareRows(rows: number[][], wanted: number[][], slack: number)
   here.forEach((r, i) => {
     assert.ok(Math.abs(r[0] - there[i][0]) <= slack, `${r} for ${there[i]}`);
     assert.deepEqual(r.slice(1, 4), there[i].slice(1, 4));
+  });
+}
+
+/** Whatever axe finds on a page that has its script. */
+export function faultsOfAxe(page: Page): Promise<string[]> {
+  return page.evaluate(async () => {
+    const { axe } = window as unknown as {
+      axe: { run(): Promise<{ violations: Array<{ id: string; nodes: Array<{ html: string }> }> }> };
+    };
+    return (await axe.run()).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 120)).join(' | ')}`);
   });
 }

@@ -5,11 +5,16 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { ended, hill, made, ptin, served } from '../../../decoder/test/support';
 import {
-  appears, askAlong, colours, compareRows, complete, onPage, programRows, savedCsv, store, text, told,
+  appears, askAlong, colours, compareRows, complete, faultsOfAxe, onPage, programRows, savedCsv, store, text, told, until,
 } from './browser';
 
 test('opens a terrain of a service from the page that lists them', () => served(`hills=${store}`, (address) => onPage(address, async (page) => {
-  await page.locator('a', { hasText: 'hills' }).click();
+  await until(page, () => [...document.images].every((image) => image.complete && image.naturalWidth > 0));
+  assert.match(await text(page, 'article'), /Heights\s+633 to 1576/);
+  assert.equal(await page.locator('.map rect').count(), 1, 'its place on the map');
+  await page.addScriptTag({ path: process.env.PTIN_AXE });
+  assert.deepEqual(await faultsOfAxe(page), []);
+  await page.locator('a.open', { hasText: 'hills' }).click();
   await complete(page);
   assert.ok(await colours(page) > 20);
 })));
