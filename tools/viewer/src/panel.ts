@@ -120,7 +120,7 @@ export class Panel {
     for (const key of ['exaggeration', 'azimuth', 'altitude'] as const) {
       if (Number(input(key).value) !== s[key]) input(key).value = String(s[key]);
     }
-    part('exaggeration-told').textContent = `${Number(s.exaggeration.toFixed(1))}\u00d7`;
+    part('exaggeration-told').textContent = `${Number((s.exaggeration || 1).toFixed(1))}\u00d7`;
     part('azimuth-told').textContent = `${compass(s.azimuth)} ${Math.round(s.azimuth)}\u00b0`;
     part('altitude-told').textContent = `${Math.round(s.altitude)}\u00b0`;
     part('error-told').textContent = s.error === 0 ? 'all' : `to \u00b1${number(s.error, 2)} ${sign}`;

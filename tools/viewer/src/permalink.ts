@@ -8,8 +8,9 @@ import type { Pose } from './view';
 export interface Settings {
   shading: Shading;
   wireframe: boolean;
+  /** How many times as high as it is the terrain is drawn; 0: as its own relief wants it (view). */
   exaggeration: number;
-  /** Degrees: clockwise from north, above the horizon. */
+  /** Of the light, degrees: clockwise from the top of the picture, above the horizon. */
   azimuth: number;
   altitude: number;
   /** Between isolines, in the height's unit; 0: none. */
@@ -19,7 +20,7 @@ export interface Settings {
 }
 
 export const defaults: Settings = {
-  shading: 'height', wireframe: false, exaggeration: 1, azimuth: 315, altitude: 42, interval: 0, error: 0,
+  shading: 'height', wireframe: false, exaggeration: 0, azimuth: 315, altitude: 42, interval: 0, error: 0,
 };
 
 export function toHash(pose: Pose | null, settings: Settings): string {
@@ -45,7 +46,7 @@ export function fromHash(hash: string): { pose: Pose | null; settings: Settings 
   const shading = parts.get('shading');
   if (shading === 'height' || shading === 'slope' || shading === 'shade') settings.shading = shading;
   settings.wireframe = parts.get('wireframe') === '1';
-  const ranges = { exaggeration: [0.5, 10], azimuth: [0, 360], altitude: [5, 90], interval: [0, 1e9], error: [0, 1e9] } as const;
+  const ranges = { exaggeration: [0.5, 20], azimuth: [0, 360], altitude: [5, 90], interval: [0, 1e9], error: [0, 1e9] } as const;
   for (const [key, [low, high]] of Object.entries(ranges) as Array<[keyof typeof ranges, readonly [number, number]]>) {
     const value = Number(parts.get(key) ?? NaN);
     if (value >= low && value <= high) settings[key] = value;

@@ -2,16 +2,19 @@
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
 import { type Certificate, certifiedWithin, holds } from 'ptin-decoder';
+import { Compass } from './compass';
+import type { DrawnMesh } from './drawn_mesh';
 import { scaleAt } from './earth';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
+import { Gestures } from './gestures';
 import { Inquiry } from './inquiry';
 import type { FromWorker, Source, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
 import { Panel } from './panel';
 import { type Settings, fromHash, toHash } from './permalink';
 import { Relief } from './relief';
-import { View } from './view';
+import { usualExaggeration, View } from './view';
 
 interface Boot {
   source: Source | null;
@@ -23,14 +26,17 @@ interface Boot {
   trouble(title: string, message: string, aside: boolean): void;
 }
 
+/** Vertices of a mesh whose heights are spread as the terrain's are. */
+const enoughToTell = 200;
 /** Pixels by which a picture of a service's terrain may be off. */
-const tolerance = 0.3;
+const tolerance = 0.6;
 
 class Viewer {
   private readonly relief: Relief;
   private readonly view: View;
   private readonly panel: Panel;
   private readonly inquiry: Inquiry;
+  private readonly compass: Compass;
   private readonly worker: Worker;
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
@@ -42,19 +48,25 @@ class Viewer {
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
+  /** With which the page was opened. */
+  private readonly linkPose = fromHash(location.hash).pose;
+  /** The first sight is chosen. */
+  private isSighted = false;
 
   constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
     this.worker = boot.worker!;
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
-    this.view = new View(this.relief.camera, canvas);
+    this.view = new View(this.relief.camera, this.relief);
+    new Gestures(canvas, this.view);
+    this.compass = new Compass(() => { this.view.turnNorth(); });
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
     this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
     part('viewshed-tool').hidden = !this.isServed;
     for (const key of Object.keys(this.panel.settings) as Array<keyof Settings>) this.apply(key);
     this.relief.beforeDrawing = () => this.beforeDrawing();
-    this.view.controls.addEventListener('change', () => { this.moved(); });
+    this.view.changed = () => { this.moved(); };
     this.followPage(canvas);
     this.followPointer(canvas);
     addEventListener('keydown', (event) => { this.key(event); });
@@ -71,6 +83,7 @@ class Viewer {
       case 'terrain': this.introduce(message); break;
       case 'mesh':
         this.relief.setMesh(message.mesh);
+        this.firstSight(message.mesh, message.status);
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);
         break;
@@ -98,11 +111,23 @@ class Viewer {
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
     part('scale').hidden = earth.lengths.metres === null;
     this.panel.setFrame(frame, message.name, `${size}${unknown}`);
-    const { pose } = fromHash(location.hash);
-    const { width, height } = this.relief.canvas.getBoundingClientRect();
-    const card = part('card').getBoundingClientRect();
-    this.view.setFrame(frame, width, card.width < width / 2 && width > height ? card.right : 0);
-    if (pose !== null) this.view.pose(pose);
+    this.view.setFrame(frame);
+    this.poseOfLink();
+    this.moved();
+  }
+
+  private poseOfLink(): void {
+    if (this.linkPose !== null) this.view.pose(this.linkPose);
+  }
+
+  /** Once enough is there to tell the relief: shows it high enough, and has it fill the picture, unless the link says otherwise. */
+  private firstSight({ spread, extent }: DrawnMesh, { vertices, state }: Status): void {
+    const { frame } = this;
+    if (this.isSighted || frame === null || spread === null || (vertices < enoughToTell && state === 'loading')) return;
+    this.isSighted = true;
+    if (this.panel.settings.exaggeration === 0) this.panel.set('exaggeration', usualExaggeration(frame, spread));
+    this.view.fillWith(extent, spread.low + 0.3 * (spread.high - spread.low));
+    this.poseOfLink();
     this.moved();
   }
 
@@ -142,14 +167,15 @@ class Viewer {
       this.relief.wireframe = s.wireframe;
       this.send({ kind: 'edges', wanted: s.wireframe });
     }
-    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration;
+    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration || 1;
     this.keepLink();
   }
 
   private beforeDrawing(): boolean {
-    const moves = this.view.update((x, y) => this.relief.groundAt(x, y));
-    const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
+    const moves = this.view.update();
+    const { distance, current } = this.view;
     this.relief.hazeFrom = 1.1 * distance;
+    if (current !== null) this.compass.show(current.heading, current.tilt);
     this.showScale(distance);
     if (this.status !== null) {
       const before = this.status.certificate;
@@ -161,7 +187,7 @@ class Viewer {
 
   /** The camera moved. */
   private moved(): void {
-    this.relief.draw();
+    this.relief.moves();
     this.keepLink();
     if (!this.isServed) return;
     clearTimeout(this.viewTimer);
@@ -189,10 +215,9 @@ class Viewer {
     const { frame, view } = this;
     if (frame === null || frame.earth.lengths.metres === null) return;
     const { canvas } = this.relief;
-    const target = view.controls.target;
-    const [x, y] = scaleAt(frame.earth, frame.mapY(target.y));
-    const across = view.across;
-    const stretch = Math.hypot(across.x * x / frame.scaleX, across.y * y / frame.scaleY);
+    const [x, y] = scaleAt(frame.earth, frame.mapY(view.lookedAt[1]));
+    const [east, north] = view.across;
+    const stretch = Math.hypot(east * x / frame.scaleX, north * y / frame.scaleY);
     const metre = 1 / (stretch * view.metresPerPixel(distance, canvas.clientHeight));
     const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
     const scale = part('scale');
@@ -205,7 +230,7 @@ class Viewer {
     new ResizeObserver(resize).observe(canvas);
     resize();
     const dark = matchMedia('(prefers-color-scheme: dark)');
-    const recolour = (): void => { this.relief.haze = colour('haze'); };
+    const recolour = (): void => { this.relief.setAir(colour('haze'), colour('sky-top'), colour('ground-low')); };
     dark.addEventListener('change', recolour);
     recolour();
     canvas.addEventListener('webglcontextlost', () => {
@@ -233,7 +258,7 @@ class Viewer {
       pressed = null;
       if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
     });
-    // A place costs a drawing of everything: it is told where the pointer rests.
+    // A place is told where the pointer rests: numbers that run are not read.
     canvas.addEventListener('pointermove', (e) => {
       clearTimeout(this.placeTimer);
       if (e.pointerType === 'touch' || e.buttons !== 0) return;
@@ -256,8 +281,7 @@ class Viewer {
   }
 
   private home(): void {
-    this.view.reset();
-    this.moved();
+    this.view.flyHome();
   }
 
   private async copyLink(): Promise<void> {
@@ -295,6 +319,7 @@ class Viewer {
     ',': () => { this.view.turn(-10); },
     '.': () => { this.view.turn(10); },
     r: () => { this.home(); },
+    n: () => { this.view.turnNorth(); },
     w: () => { this.panel.set('wireframe', !this.panel.settings.wireframe); },
     i: () => { this.panel.set('interval', this.panel.settings.interval > 0 ? 0 : this.panel.usualInterval); },
     1: () => { this.panel.set('shading', 'height'); },

@@ -6,8 +6,9 @@ import assert from 'node:assert/strict';
 import { cpSync, readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
-import type { BufferGeometry, PerspectiveCamera } from 'three';
+import type { DrawnMesh } from '../../src/drawn_mesh';
 import type { Frame } from '../../src/frame';
+import type { Camera } from '../../src/space';
 import type { Pose } from '../../src/view';
 import { host, launched } from '../../../decoder/test/host.mjs';
 import { assets, file, ptin, terrain } from '../../../decoder/test/support';
@@ -19,10 +20,10 @@ declare global {
       frame: Frame;
       status: { certificate: Certificate };
       relief: {
-        pictures: number; camera: PerspectiveCamera; geometry: BufferGeometry;
+        pictures: number; camera: Camera; drawn: DrawnMesh;
         groundAt(x: number, y: number): number | null; pick(x: number, y: number): unknown;
       };
-      view: { current: Pose };
+      view: { current: Pose; exaggeration: number };
     };
   }
 }

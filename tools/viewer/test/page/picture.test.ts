@@ -69,7 +69,7 @@ test('a terrain of 800 km fills the picture as a small one does', async () => {
   cpSync(gridded('wide', 'EPSG:3413', [0, 0], 20000, heights).stream, join(site, 'wide.ptins'));
   await onPage(`${fast.url}?stream=wide.ptins`, async (page) => {
     await complete(page);
-    const away = await page.evaluate(() => window.ptinViewer.relief.camera.position.length());
+    const away = await page.evaluate(() => Math.hypot(...window.ptinViewer.relief.camera.position));
     assert.ok(away < 3e6, `${away} m`);
   });
 });
@@ -79,8 +79,8 @@ test('the camera stays above the ground', () => onPage(`${fast.url}#error=20`, a
   await page.mouse.move(640, 380);
   const above = (): Promise<number> => page.evaluate(() => {
     const { relief } = window.ptinViewer;
-    const { x, y, z } = relief.camera.position;
-    return z - (relief.groundAt(x, y) ?? 0);
+    const [x, y, z] = relief.camera.position;
+    return z - (relief.groundAt(x, y) ?? 0) * window.ptinViewer.view.exaggeration;
   });
   for (let i = 0; i < 40; ++i) await page.mouse.wheel(0, -240);
   await rested(page);
