@@ -29,14 +29,17 @@ interface Mark {
 
 export class Marks {
   private all: Mark[] = [];
-  private readonly line: Program;
-  private readonly point: Program;
-  private readonly ribbon: Program;
+  private made: Record<'line' | 'point' | 'ribbon', Program> | null = null;
 
-  constructor(private readonly gl: WebGL2RenderingContext) {
-    this.line = new Program(gl, lineVertex, lineFragment);
-    this.point = new Program(gl, lineVertex, markFragment);
-    this.ribbon = new Program(gl, ribbonVertex, lineFragment);
+  constructor(private readonly gl: WebGL2RenderingContext) {}
+
+  /** Made with the first mark, for which the first picture need not wait. */
+  private get programs(): Record<'line' | 'point' | 'ribbon', Program> {
+    const { gl } = this;
+    return this.made ??= {
+      line: new Program(gl, lineVertex, lineFragment), point: new Program(gl, lineVertex, markFragment),
+      ribbon: new Program(gl, ribbonVertex, lineFragment),
+    };
   }
 
   clear(): void {
@@ -48,13 +51,13 @@ export class Marks {
   addPoint(place: Place, colour: string, size: number): void {
     const { gl } = this;
     const vertices = new Vertices(gl, [{ at: 0, numbers: numbersOf([place]), size: 3 }], null);
-    this.add({ vertices, program: this.point, mode: gl.POINTS, colour: pageColour(colour, 1), size, lift: 0.005, isHidden: false, order: 3 });
+    this.add({ vertices, program: this.programs.point, mode: gl.POINTS, colour: pageColour(colour, 1), size, lift: 0.005, isHidden: false, order: 3 });
   }
 
   /** A line through places, which is seen through the terrain, faintly. */
   addLine(places: readonly Place[], colour: string): void {
     const { gl } = this;
-    const common = { vertices: ribbonOf(gl, places), program: this.ribbon, mode: gl.TRIANGLES, size: 2.6 };
+    const common = { vertices: ribbonOf(gl, places), program: this.programs.ribbon, mode: gl.TRIANGLES, size: 2.6 };
     this.add({ ...common, colour: pageColour(colour, 1), lift: 0.0015, isHidden: true, order: 2 });
     this.add({ ...common, colour: pageColour(colour, 0.3), lift: 0, isHidden: false, order: 1 });
   }
@@ -63,13 +66,13 @@ export class Marks {
   addBody(places: readonly Place[], corners: readonly number[], colour: string): void {
     const { gl } = this;
     const vertices = new Vertices(gl, [{ at: 0, numbers: numbersOf(places), size: 3 }], new Uint32Array(corners));
-    this.add({ vertices, program: this.line, mode: gl.TRIANGLES, colour: pageColour(colour, 0.22), size: 0, lift: 0, isHidden: true, order: 1 });
+    this.add({ vertices, program: this.programs.line, mode: gl.TRIANGLES, colour: pageColour(colour, 0.22), size: 0, lift: 0, isHidden: true, order: 1 });
   }
 
   /** Edges of the mesh, as two vertices each. */
   drawEdges(edges: Vertices, seen: Seen): void {
     const { gl } = this;
-    this.line.use({ ...seen, colour: [0.05, 0.1, 0.16, 0.26], size: 0, lift: 0 });
+    this.programs.line.use({ ...seen, colour: [0.05, 0.1, 0.16, 0.26], size: 0, lift: 0 });
     this.whileBlending(() => { edges.draw(gl.LINES); });
   }
 

@@ -39,7 +39,8 @@ export class Relief {
   pictures = 0;
   private readonly gl: WebGL2RenderingContext;
   private readonly plain: Program;
-  private readonly detailed: Program;
+  /** Made when it is needed: compiling takes as long as some pictures. */
+  private detailed: Program | null = null;
   private readonly wall: Program;
   private readonly sky: Program;
   private readonly skyVertices: Vertices;
@@ -70,7 +71,6 @@ export class Relief {
     if (gl === null) throw new Error('no WebGL 2');
     this.gl = gl;
     this.plain = new Program(gl, groundVertex, groundFragment(false));
-    this.detailed = new Program(gl, groundVertex, groundFragment(true));
     this.wall = new Program(gl, wallVertex, wallFragment);
     this.sky = new Program(gl, skyVertex, skyFragment);
     this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
@@ -79,7 +79,6 @@ export class Relief {
     texture(gl, 1, rampPixels(slopeStops));
     texture(gl, 2, new Uint8Array(4));
     this.plain.sampler('ramp', 0);
-    for (const [unit, name] of ['ramp', 'slopeRamp', 'drape'].entries()) this.detailed.sampler(name, unit);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -280,7 +279,7 @@ export class Relief {
     return ratio;
   }
 
-  /** While the camera moves: takes fewer pixels where pictures are slow, more where they are quick. */
+  /** While the camera moves: takes fewer pixels from now on where a picture came late after the one before. */
   private paced(begin: number): void {
     if (this.movedAt !== 0 && begin - this.movedAt < 250) {
       const took = begin - this.movedAt;
@@ -305,8 +304,7 @@ export class Relief {
       hatch: ratio, ...this.details,
     };
     gl.enable(gl.POLYGON_OFFSET_FILL);
-    const program = this.hasDetails ? this.detailed : this.plain;
-    program.use(common);
+    (this.hasDetails ? this.detailed ??= this.detailedMade() : this.plain).use(common);
     for (const tile of this.tilesInSight(drawn)) ground.draw(gl.TRIANGLES, drawn.parts[tile], drawn.parts[tile + 1] - drawn.parts[tile]);
     const tiles = tilesAcross * tilesAcross;
     for (const [part, paint] of [[tiles, [...waterColour, 1]], [tiles + 1, [...voidColour, 2]]] as const) {
@@ -316,6 +314,12 @@ export class Relief {
       ground.draw(gl.TRIANGLES, drawn.parts[part], count);
     }
     gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  private detailedMade(): Program {
+    const made = new Program(this.gl, groundVertex, groundFragment(true));
+    for (const [unit, name] of ['ramp', 'slopeRamp', 'drape'].entries()) made.sampler(name, unit);
+    return made;
   }
 
   /** Something is drawn that is computed a pixel. */

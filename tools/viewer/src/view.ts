@@ -84,18 +84,23 @@ export class View {
     this.reset();
   }
 
+  /** Has another frame of the same terrain, a little more exact; the camera stays. */
+  replaceFrame(frame: Frame): void { this.frame = frame; }
+
   /** Goes where the ground fills the picture, which lies within an extent of the scene; `z`: its middle height. This is the home. */
   fillWith(extent: { west: number; south: number; east: number; north: number }, z: number): void {
     const { frame } = this;
     if (frame === null) return;
     const x = (extent.west + extent.east) / 2, y = (extent.south + extent.north) / 2;
     const whole = Math.hypot(extent.east - extent.west, extent.north - extent.south);
+    // A tall picture is filled by ground that is seen from higher up.
+    const tilt = homeTilt - 12 * Math.max(0, Math.min(1, 2 * (1 - this.camera.aspect)));
     let best = -Infinity;
     // The picture is to be full, and to show much.
     for (let distance = 0.36 * whole; distance < 0.9 * whole; distance *= 1.08) {
       for (const ahead of [-0.12, -0.06, 0, 0.06]) {
         const pose = moved(frame, {
-          x: frame.mapX(x), y: frame.mapY(y), height: frame.heightAt(z), distance, heading: homeHeading, tilt: homeTilt,
+          x: frame.mapX(x), y: frame.mapY(y), height: frame.heightAt(z), distance, heading: homeHeading, tilt,
         }, 0, ahead * whole);
         this.place(pose);
         const merit = this.fullness(z * this.factor) + 0.36 * Math.log(distance / whole);

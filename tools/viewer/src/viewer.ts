@@ -3,28 +3,19 @@
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
 import { type Certificate, certifiedWithin, holds } from 'ptin-decoder';
 import { Compass } from './compass';
-import type { DrawnMesh } from './drawn_mesh';
+import { type DrawnMesh, drawnMesh } from './drawn_mesh';
 import { scaleAt } from './earth';
+import { type FirstMesh, firstMeshOf } from './first_mesh';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
 import { Gestures } from './gestures';
 import { Inquiry } from './inquiry';
-import type { FromWorker, Source, Status, ToWorker } from './messages';
+import type { Boot, FromWorker, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
 import { Panel } from './panel';
 import { type Settings, fromHash, toHash } from './permalink';
 import { Relief } from './relief';
 import { usualExaggeration, View } from './view';
-
-interface Boot {
-  source: Source | null;
-  worker: Worker | null;
-  early: FromWorker[];
-  /** Has the Worker open a terrain. */
-  open(source: Source): void;
-  /** Says what went wrong. `aside`: there is a terrain, which stays in sight. */
-  trouble(title: string, message: string, aside: boolean): void;
-}
 
 /** Vertices of a mesh whose heights are spread as the terrain's are. */
 const enoughToTell = 200;
@@ -37,7 +28,11 @@ class Viewer {
   private readonly panel: Panel;
   private readonly inquiry: Inquiry;
   private readonly compass: Compass;
-  private readonly worker: Worker;
+  private worker: Worker | null;
+  /** For the Worker, until it is begun. */
+  private readonly unsent: ToWorker[] = [];
+  /** The vertices of the picture that lay in the page; a mesh that has come only so far is not shown. */
+  private firstVertices = 0;
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate | null }) | null = null;
@@ -55,14 +50,14 @@ class Viewer {
 
   constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
-    this.worker = boot.worker!;
+    this.worker = boot.worker;
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
     this.view = new View(this.relief.camera, this.relief);
     new Gestures(canvas, this.view);
     this.compass = new Compass(() => { this.view.turnNorth(); });
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
-    this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.worker.postMessage(m); });
+    this.inquiry = new Inquiry(this.relief, () => this.frame, (m) => { this.send(m); });
     part('viewshed-tool').hidden = !this.isServed;
     for (const key of Object.keys(this.panel.settings) as Array<keyof Settings>) this.apply(key);
     this.relief.beforeDrawing = () => this.beforeDrawing();
@@ -70,25 +65,67 @@ class Viewer {
     this.followPage(canvas);
     this.followPointer(canvas);
     addEventListener('keydown', (event) => { this.key(event); });
+    if (boot.hasPicture === true) this.showFirst();
+    else this.listen();
+  }
+
+  private listen(): void {
+    const { boot } = this;
+    this.worker = boot.begin();
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => { this.take(event.data); };
     for (const message of boot.early.splice(0)) this.take(message);
+    for (const message of this.unsent.splice(0)) this.worker.postMessage(message);
+  }
+
+  /** Draws the picture that lies in the page; only then the Worker begins, so that what this needs comes first. */
+  private showFirst(): void {
+    let first: FirstMesh | null = null;
+    try {
+      first = firstMeshOf(part('first-mesh').textContent ?? '');
+    } catch (error) {
+      // The stream brings the same, later.
+      console.warn(`the first picture: ${(error as Error).message}`);
+    }
+    if (first !== null) this.drawFirst(first);
+    requestAnimationFrame(() => { setTimeout(() => {
+      if (this.boot.source !== null) this.boot.open(this.boot.source);
+      this.listen();
+    }); });
+  }
+
+  private drawFirst({ frame, mesh, certified }: FirstMesh): void {
+    const { vertexCount: vertices, triangleCount: triangles } = mesh;
+    this.frame = frame;
+    this.relief.setFrame(frame);
+    this.view.setFrame(frame);
+    this.poseOfLink();
+    this.take({
+      kind: 'mesh', mesh: drawnMesh(mesh, frame),
+      status: { vertices, triangles, splits: 0, splitsInAll: 0, certified, bytes: 0, bytesInAll: 0, state: 'loading' },
+    });
+    this.firstVertices = vertices;
+    this.moved();
   }
 
   private send(message: ToWorker): void {
-    this.worker.postMessage(message);
+    if (this.worker === null) this.unsent.push(message);
+    else this.worker.postMessage(message);
   }
 
   private take(message: FromWorker): void {
     switch (message.kind) {
       case 'terrain': this.introduce(message); break;
       case 'mesh':
+        if (message.status.vertices < this.firstVertices && message.status.state === 'loading') break;
+        this.firstVertices = 0;
         this.relief.setMesh(message.mesh);
+        this.panel.setColours(this.relief.colouredHeights);
         this.firstSight(message.mesh, message.status);
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);
         break;
       case 'edges': this.relief.setEdges(message.edges); break;
-      case 'status': this.show(message.status); break;
+      case 'status': if (this.firstVertices === 0) this.show(message.status); break;
       case 'answer':
       case 'refused': this.inquiry.take(message); break;
       case 'mended':
@@ -111,8 +148,12 @@ class Viewer {
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
     part('scale').hidden = earth.lengths.metres === null;
     this.panel.setFrame(frame, message.name, `${size}${unknown}`);
-    this.view.setFrame(frame);
-    this.poseOfLink();
+    if (this.firstVertices > 0) {
+      this.view.replaceFrame(frame);
+    } else {
+      this.view.setFrame(frame);
+      this.poseOfLink();
+    }
     this.moved();
   }
 
@@ -376,7 +417,7 @@ function start(boot: Boot): void {
   }
 }
 
-const boot = (window as unknown as { ptinBoot: Boot }).ptinBoot;
+const boot = window.ptinBoot;
 if (location.protocol === 'file:') {
   // The page itself has told it (index.html).
 } else if (boot.source === null) {

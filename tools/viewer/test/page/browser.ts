@@ -23,7 +23,7 @@ declare global {
         pictures: number; camera: Camera; drawn: DrawnMesh;
         groundAt(x: number, y: number): number | null; pick(x: number, y: number): unknown;
       };
-      view: { current: Pose; exaggeration: number };
+      view: { current: Pose; exaggeration: number; project(x: number, y: number, z: number): { x: number; y: number; visible: boolean } };
     };
   }
 }
@@ -150,7 +150,8 @@ export async function colours(page: Page): Promise<number> {
   const clip = { x: width * 0.4, y: height * 0.4, width: width * 0.3, height: height * 0.25 };
   const png = (await page.screenshot({ clip })).toString('base64');
   return page.evaluate(async (data) => {
-    const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+    const picture = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
     const canvas = new OffscreenCanvas(picture.width, picture.height);
     const context = canvas.getContext('2d')!;
     context.drawImage(picture, 0, 0);
