@@ -144,8 +144,30 @@ TEST_F(ServeConventions, GivesThePageAsItIsPacked) {
     EXPECT_LT(packed.body.size(), file.content.size() * 2 / 3);
     const std::string known = "If-None-Match: " + packed.header("etag") + "\r\n";
     EXPECT_EQ(get(target, "Accept-Encoding: gzip\r\n" + known).status, 304);
+    EXPECT_EQ(plain.header("content-security-policy"), viewer_policy(false));
   }
+  const std::string policy = viewer_policy(false);
+  EXPECT_NE(policy.find("script-src 'self' 'wasm-unsafe-eval'"), std::string::npos);
+  EXPECT_NE(policy.find("style-src 'self'"), std::string::npos);
+  EXPECT_EQ(policy.find("'unsafe-inline'"), std::string::npos);
+  EXPECT_NE(policy.find("frame-ancestors 'self'"), std::string::npos);
+  const HttpAnswer shown = get("/viewer/index.html?embed=1");
+  EXPECT_NE(shown.header("content-security-policy").find("frame-ancestors *"), std::string::npos);
   EXPECT_EQ(get("/viewer/none.js").status, 404);
+}
+
+TEST_F(ServeConventions, PutsTheFirstPictureIntoThePage) {
+  const HttpAnswer page = get("/viewer/index.html?collection=coast");
+  EXPECT_EQ(page.status, 200);
+  const std::size_t at = page.body.find(R"(id="first-mesh">)");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(at, page.body.find("</head>"));
+  EXPECT_LT(page.body.size(), 60'000U);
+  EXPECT_EQ(get("/viewer/index.html?collection=coast").header("etag"), page.header("etag"));
+  const HttpAnswer packed = get("/viewer/index.html?collection=coast", "Accept-Encoding: gzip\r\n");
+  EXPECT_EQ(packed.header("content-encoding"), "gzip");
+  EXPECT_EQ(get("/viewer/index.html").body.find("first-mesh"), std::string::npos);
+  EXPECT_EQ(get("/viewer/index.html?collection=none").status, 200) << "the page tells it";
 }
 
 TEST_F(ServeConventions, AnswersTheLinksOfItsPage) {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
+#include "tools/http/gzip.h"
+#include "tools/viewer/first_mesh.h"
 #include "tools/viewer/viewer_page.h"
 
 namespace ptin::tools {
@@ -40,7 +42,7 @@ TEST_F(ViewerCli, WritesThePageAndTheStreamThatItOpens) {
   const std::string dem = stream("dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
-  EXPECT_EQ(answer.at("files").size(), 6U);
+  EXPECT_EQ(answer.at("files").size(), 8U);
   for (const json& written : answer.at("files")) {
     const std::string name = written.at("name");
     EXPECT_EQ(written.at("bytes"), fs::file_size(file("site/" + name))) << name;
@@ -76,7 +78,7 @@ TEST_F(ViewerCli, AStreamThatLiesInTheFolderStaysWhereItIs) {
   fs::create_directory(file("site"));
   const std::string dem = stream("site/dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
-  EXPECT_EQ(answer.at("files").size(), 5U);
+  EXPECT_EQ(answer.at("files").size(), 7U);
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
 }
 
@@ -101,6 +103,27 @@ TEST_F(ViewerCli, RefusesWhatIsNoStream) {
   EXPECT_EQ(run_ptin({"viewer", "-o", file("no/site")}).status, 3) << "the folder above is missing";
 }
 
+TEST_F(ViewerCli, TheFirstPictureLiesInThePage) {
+  const std::string dem = stream("dem.ptins");
+  expect_done({"viewer", "-o", file("site"), "--stream", dem, "-q"});
+  const std::string page = read_file(file("site/index.html"));
+  constexpr std::string_view kBegin = R"(<script type="application/json" id="first-mesh">)";
+  const std::size_t at = page.find(kBegin);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t end = page.find("</script>", at);
+  const json first = json::parse(page.substr(at + kBegin.size(), end - at - kBegin.size()));
+  EXPECT_EQ(first.at("facts").size(), 15U);
+  EXPECT_GT(first.at("vertices"), 300);
+  EXPECT_GE(first.at("error"), 20.0) << "of a coarser mesh than the stream's last";
+  EXPECT_NO_THROW(static_cast<void>(json::parse(first.at("metadata").get<std::string>())));
+  // A stream that is damaged from its beginning has a page all the same, which will tell it.
+  std::string bytes = read_file(dem);
+  bytes[300] = static_cast<char>(bytes[300] ^ 1);
+  write_file(file("bad.ptins"), bytes);
+  expect_done({"viewer", "-o", file("bad"), "--stream", file("bad.ptins"), "-q"});
+  EXPECT_EQ(read_file(file("bad/index.html")).find("first-mesh"), std::string::npos);
+}
+
 TEST(ViewerPage, AnyNameIsAnAddressBesideThePage) {
   const std::string page = viewer_page_for("a \"b\" <c>&#?:100%\xC3\xA4.ptins");
   EXPECT_NE(page.find("content=\"./a%20%22b%22%20%3Cc%3E%26%23%3F%3A100%25%C3%A4.ptins\">"),
@@ -109,18 +132,21 @@ TEST(ViewerPage, AnyNameIsAnAddressBesideThePage) {
 
 TEST(ViewerPage, TheFilesAreSmallEnoughToOpenQuickly) {
   std::map<std::string_view, std::size_t> bytes;
-  std::size_t at_once = 0;
+  std::size_t at_once = 0, packed = 0;
   for (const ViewerFile& file : viewer_files()) {
     EXPECT_FALSE(file.content.empty()) << file.name;
     bytes[file.name] = file.content.size();
     if (file.name.ends_with(".wasm")) {
       EXPECT_TRUE(file.content.starts_with(std::string_view("\0asm", 4))) << file.name;
     }
-    if (file.name != "questions.wasm") at_once += file.content.size();
+    if (file.name == "questions.wasm") continue;
+    at_once += file.content.size();
+    packed += http::gzip(file.content).size();
   }
   EXPECT_LT(bytes.at("decoder.wasm"), 90'000U) << "what every visitor waits for";
   EXPECT_LT(bytes.at("questions.wasm"), 135'000U) << "fetched when something is asked";
-  EXPECT_LT(at_once, 760'000U) << "before packing";
+  EXPECT_LT(at_once, 260'000U) << "before packing";
+  EXPECT_LT(packed, 100'000U) << "as a browser gets it";
 }
 
 }  // namespace

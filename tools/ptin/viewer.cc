@@ -15,6 +15,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/error.h"
 #include "storage/file_beginning.h"
 #include "storage/layout.h"
 #include "tools/error_status.h"
@@ -23,6 +24,7 @@
 #include "tools/output/output_file.h"
 #include "tools/ptin/command.h"
 #include "tools/ptin/query_options.h"
+#include "tools/viewer/first_mesh.h"
 #include "tools/viewer/viewer_page.h"
 
 namespace ptin::tools {
@@ -117,6 +119,21 @@ WrittenFile copy_stream(const ViewerOptions& options, const std::string& name) {
   return {name, bytes};
 }
 
+/// The first picture of the stream. A stream that cannot be read tells so when it is opened, with what
+/// of it came before the damage in sight; the page is written without a picture then.
+std::string first_mesh_of(const ViewerOptions& options) {
+  constexpr std::size_t kBeginning = std::size_t{128} << 10;
+  std::ifstream in = open_to_copy(options.stream);
+  std::vector<char> first(kBeginning);
+  in.read(first.data(), static_cast<std::streamsize>(first.size()));
+  first.resize(static_cast<std::size_t>(in.gcount()));
+  try {
+    return first_mesh_element(std::as_bytes(std::span(first)));
+  } catch (const Error&) {
+    return {};
+  }
+}
+
 /// The stream first, the page last: a page that is there has all that it needs.
 std::vector<WrittenFile> write_all(const ViewerOptions& options, const std::string& name) {
   std::vector<WrittenFile> written;
@@ -127,7 +144,8 @@ std::vector<WrittenFile> write_all(const ViewerOptions& options, const std::stri
   for (const ViewerFile& file : viewer_files()) {
     if (file.name != "index.html") continue;
     written.push_back(name.empty() ? write_file(options, file.name, file.content)
-                                   : write_file(options, file.name, viewer_page_for(name)));
+                                   : write_file(options, file.name,
+                                                viewer_page_for(name, first_mesh_of(options))));
   }
   return written;
 }

@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The files of the viewer, which are packed into the program.
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "engine/error.h"
 #include "tools/http/etag.h"
 #include "tools/http/gzip.h"
 #include "tools/http/problem.h"
+#include "tools/region/serving.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
+#include "tools/viewer/first_mesh.h"
 #include "tools/viewer/viewer_page.h"
 
 namespace ptin::serve {
@@ -22,6 +33,26 @@ struct SentFile {
   std::string etag, packed;
 };
 
+/// A page with a first picture.
+struct SentPage {
+  std::string content, etag, packed;
+};
+
+/// What is sent, whose bytes somebody else has.
+struct Sent {
+  std::string_view media_type, content, packed;
+  const std::string& etag;
+};
+
+/// Of the first picture of a collection: some of the first splits, in few bytes. Their number is that
+/// of the vertices, nearly.
+constexpr std::uint64_t kFirstSplits = 1000, kFirstBytes = std::uint64_t{48} << 10;
+/// Of the relief: its error, so that what is looked at for it is little of a large file.
+constexpr double kFirstSteps = 40;
+constexpr std::uint64_t kPageMemory = std::uint64_t{64} << 20;
+/// Pages that are kept, of some ten kilobytes each.
+constexpr std::size_t kMostPages = 256;
+
 const std::vector<SentFile>& sent_files() {
   static const std::vector<SentFile> all = [] {
     std::vector<SentFile> made;
@@ -33,13 +64,60 @@ const std::vector<SentFile>& sent_files() {
   return all;
 }
 
-http::Response response_of(const SentFile& sent, const http::Request& request) {
+/// The page of a collection, with its first picture.
+using Page = std::shared_ptr<const SentPage>;
+
+/// The first picture, from a stream as a client asks for it. Empty where there is none: what is wrong with
+/// the file is told when the page asks for it.
+std::string first_mesh_of(const Asked& asked, const Collection& collection) {
+  const StoreFacts& facts = collection.terrain.store().facts();
+  tools::Serving wanted;
+  wanted.error = std::max((facts.max_height - facts.min_height) / kFirstSteps, 1e-6);
+  StreamRequest request;
+  request.wanted = tools::predicate_of(wanted, facts, "window");
+  request.tolerance = wanted.error;
+  request.limits = {kPageMemory, asked.limits.stop};
+  request.most_splits = kFirstSplits;
+  request.most_bytes = kFirstBytes;
+  request.metadata = tools::metadata_of_stream(collection.terrain.store(), wanted);
+  std::vector<std::byte> stream;
+  try {
+    collection.terrain.stream(request, [&](std::span<const std::byte> bytes) {
+      stream.insert(stream.end(), bytes.begin(), bytes.end());
+    });
+    return tools::first_mesh_element(stream);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// The page of a collection, made once for each content of its file.
+Page page_of(const Asked& asked, const Collection& collection) {
+  static std::mutex mutex;
+  static std::map<std::string, Page> pages;
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = pages.find(collection.fingerprint);
+    if (found != pages.end()) return found->second;
+  }
+  auto made = std::make_shared<SentPage>();
+  made->content = tools::viewer_page_with(first_mesh_of(asked, collection));
+  made->etag = http::etag_of(made->content);
+  made->packed = http::gzip(made->content);
+  const std::lock_guard lock(mutex);
+  if (pages.size() >= kMostPages) pages.clear();
+  return pages.emplace(collection.fingerprint, std::move(made)).first->second;
+}
+
+http::Response response_of(const Sent& sent, const Asked& asked) {
+  const http::Request& request = asked.request;
   const bool is_packed = http::takes_gzip(request.header("accept-encoding").value_or(""));
   http::Response response;
-  response.content_type = sent.file.media_type;
-  response.lasting_body = is_packed ? std::string_view(sent.packed) : sent.file.content;
+  response.content_type = sent.media_type;
+  response.lasting_body = is_packed ? sent.packed : sent.content;
   response.add("ETag", is_packed ? http::gzip_etag_of(sent.etag) : sent.etag);
   response.add("Cache-Control", "no-cache");
+  response.add("Content-Security-Policy", tools::viewer_policy(asked.question.has("embed")));
   if (is_packed) response.add("Content-Encoding", "gzip");
   if (http::names_etag(request.header("if-none-match").value_or(""), sent.etag)) {
     response.status = 304;
@@ -63,8 +141,19 @@ ask::Parameters viewer_parameters() {
 
 http::Response answer_viewer(const Asked& asked) {
   const std::string_view name = asked.rest.empty() ? "index.html" : asked.rest;
+  if (name == "index.html" && asked.question.has("collection") && !asked.question.has("service")) {
+    const auto collection = asked.catalogue.find(asked.question.text("collection"));
+    if (collection != nullptr) {
+      const Page page = page_of(asked, *collection);
+      http::Response response =
+          response_of({"text/html; charset=utf-8", page->content, page->packed, page->etag}, asked);
+      response.held = std::const_pointer_cast<SentPage>(page);
+      return response;
+    }
+  }
   for (const SentFile& sent : sent_files()) {
-    if (sent.file.name == name) return response_of(sent, asked.request);
+    if (sent.file.name != name) continue;
+    return response_of({sent.file.media_type, sent.file.content, sent.packed, sent.etag}, asked);
   }
   throw http::Problem(404, "the viewer has no such file; begin with /viewer/index.html");
 }

@@ -3,6 +3,8 @@
 # Writes the viewer's files as a source: cmake -D ASSETS=folder -D OUT=viewer_files.cc -P embed.cmake. Needs no Node: the
 # files are kept in the repository.
 set(type_index_html "text/html; charset=utf-8")
+set(type_viewer_css "text/css")
+set(type_boot_js "text/javascript")
 set(type_viewer_js "text/javascript")
 set(type_worker_js "text/javascript")
 set(type_ptin_terrain_js "text/javascript")
@@ -11,7 +13,7 @@ set(type_questions_wasm "application/wasm")
 string(REPEAT "." 128 line)  # 64 bytes
 set(arrays "")
 set(rows "")
-foreach(name IN ITEMS index.html viewer.js worker.js ptin-terrain.js decoder.wasm questions.wasm)
+foreach(name IN ITEMS index.html viewer.css boot.js viewer.js worker.js ptin-terrain.js decoder.wasm questions.wasm)
   string(MAKE_C_IDENTIFIER ${name} id)
   file(READ ${ASSETS}/${name} hex HEX)
   string(REGEX REPLACE "(${line})" "\\1\n" hex "${hex}")

@@ -16,11 +16,21 @@ struct ViewerFile {
   std::string_view content;  ///< Lives as long as the program.
 };
 
-/// index.html, viewer.js, worker.js, decoder.wasm, questions.wasm.
+/// index.html, viewer.css, boot.js, viewer.js, worker.js, decoder.wasm, questions.wasm.
 [[nodiscard]] std::span<const ViewerFile> viewer_files() noexcept;
 
 /// index.html, made to open a stream when its address names none.
 /// @param stream  The name of a file beside the page; any bytes but `/` and NUL.
-[[nodiscard]] std::string viewer_page_for(std::string_view stream);
+/// @param first_mesh  first_mesh_element() of the stream.
+[[nodiscard]] std::string viewer_page_for(std::string_view stream,
+                                          std::string_view first_mesh = {});
+
+/// index.html with the first mesh of what its address names.
+[[nodiscard]] std::string viewer_page_with(std::string_view first_mesh);
+
+/// What the page may load and do, as Content-Security-Policy has it. The page itself says the same in an element, but
+/// for who may show it in a frame.
+/// @param in_frames  Any page may show it in a frame; else its own host's alone.
+[[nodiscard]] std::string viewer_policy(bool in_frames);
 
 }  // namespace ptin::tools

@@ -1,24 +1,70 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The mesh as the GPU wants it: positions and normals around the local origin, corners of the surface's triangles. Void
-// triangles are left out, so voids stay open.
-import { heightOf, type MeshView, none, normalsOf, surfaceCorners, triangleWords, vertexWords } from 'ptin-decoder';
+// The mesh as the picture wants it: positions around the local origin, how each vertex is lit, corners of triangles by what they
+// are, the plinth's walls, and where triangles lie.
+import { heightOf, type MeshView, none, triangleWords, vertexWords } from 'ptin-decoder';
 import type { Frame } from './frame';
+import { type Spread, SurfaceRaster } from './surface_raster';
+import { extentOf, gridOf, type TriangleGrid } from './triangle_grid';
+import { kindsOf, land, water } from './water';
+
+/** Of a terrain's land along each side: parts that are not in sight are not drawn, nearer ones first. */
+export const tilesAcross = 8;
 
 export interface DrawnMesh {
   /** Three a vertex, metres in the scene. */
   positions: Float32Array;
-  /** Four a vertex, the last without a meaning: of the mean plane around it, weighted by area, 32767 for 1. */
+  /** Four a vertex, 32767 for 1: the normal of the land around it, weighted by angle, and whether it is on a ridge or in a hollow (-1). */
   normals: Int16Array;
-  /** Three a surface triangle. */
+  /** Three a triangle: of land, tile by tile, then of water, then of voids. */
   corners: Uint32Array;
+  /** Where in `corners` each tile of land begins; then water, voids, and the end. */
+  parts: Uint32Array;
+  /** Four a tile of land: its least x and y, its greatest x and y. */
+  tileExtents: Float32Array;
+  /** Walls of the border: x, y, z and 1 at the foot for four vertices an edge. */
+  walls: Float32Array;
+  /** Of each of them, which way is out: 32767 for 1. */
+  wallNormals: Int16Array;
+  grid: TriangleGrid;
+  /** Null without land. */
+  spread: Spread | null;
+  /** What is not void, in the scene: its least and its greatest x and y. */
+  extent: { west: number; south: number; east: number; north: number };
 }
 
 /** Cost: linear. */
 export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
   const positions = drawnPositions(mesh, frame);
-  const corners = surfaceCorners(mesh);
-  return { positions, corners, normals: drawnNormals(positions, corners) };
+  const kinds = kindsOf(mesh, frame.facts);
+  const { corners, parts } = partedCorners(mesh, kinds, positions, frame);
+  const landCorners = corners.subarray(0, parts[tilesAcross * tilesAcross]);
+  const surface = corners.subarray(0, surfaceEnd(parts));
+  const raster = new SurfaceRaster(positions, landCorners);
+  return {
+    positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
+    tileExtents: tileExtentsOf(positions, corners, parts), ...drawnWalls(mesh, positions), grid: gridOf(positions, surface), spread: raster.spread,
+    extent: extentOf(positions, surface),
+  };
+}
+
+/** Where corners of land and water end. */
+export function surfaceEnd(parts: Uint32Array): number {
+  return parts[parts.length - 2];
+}
+
+export function buffersOf({ positions, normals, corners, parts, tileExtents, walls, wallNormals, grid }: DrawnMesh): ArrayBuffer[] {
+  const all = [positions, normals, corners, parts, tileExtents, walls, wallNormals, grid.starts, grid.triangles];
+  return all.map((a) => a.buffer as ArrayBuffer);
+}
+
+function tileExtentsOf(positions: Float32Array, corners: Uint32Array, parts: Uint32Array): Float32Array {
+  const extents = new Float32Array(4 * tilesAcross * tilesAcross);
+  for (let tile = 0; tile < tilesAcross * tilesAcross; ++tile) {
+    const { west, south, east, north } = extentOf(positions, corners.subarray(parts[tile], parts[tile + 1]));
+    extents.set([west, south, east, north], 4 * tile);
+  }
+  return extents;
 }
 
 function drawnPositions(mesh: MeshView, frame: Frame): Float32Array {
@@ -32,19 +78,109 @@ function drawnPositions(mesh: MeshView, frame: Frame): Float32Array {
   for (let v = 0, from = 0, to = 0; v < vertexCount; ++v, from += vertexWords, to += 3) {
     positions[to] = (vertices[from] - middleX) * stepX;
     positions[to + 1] = (vertices[from + 1] - middleY) * stepY;
-    positions[to + 2] = mesh.hasHeight[v] !== 0 ? frame.sceneZ(heightOf(facts, vertices[from + 2])) : 0;
+    positions[to + 2] = mesh.hasHeight[v] !== 0 ? frame.sceneZ(heightOf(facts, vertices[from + 2])) : NaN;
   }
+  levelVoids(mesh, positions);
   return positions;
 }
 
-/** Unit normals as the card takes them: 16 bits a number, four numbers a vertex. */
-function drawnNormals(positions: Float32Array, corners: Uint32Array): Int16Array {
-  const units = normalsOf(positions, corners);
+/** Gives vertices in voids the mean height of those beside them that have one, from the rims inwards. */
+function levelVoids({ triangles, triangleCount, classes }: MeshView, positions: Float32Array): void {
+  let open: number[] = [];
+  for (let t = 0; t < triangleCount; ++t) if (classes[t] !== 0) open.push(triangleWords * t);
+  for (let before = -1; open.length !== before;) {
+    before = open.length;
+    open = open.filter((at) => {
+      const z = [0, 1, 2].map((k) => positions[3 * triangles[at + k] + 2]);
+      const known = z.filter((h) => !Number.isNaN(h));
+      if (known.length === 0) return true;
+      const mean = known.reduce((a, b) => a + b) / known.length;
+      z.forEach((h, k) => { if (Number.isNaN(h)) positions[3 * triangles[at + k] + 2] = mean; });
+      return false;
+    });
+  }
+  for (let at = 2; at < positions.length; at += 3) if (Number.isNaN(positions[at])) positions[at] = 0;
+}
+
+function partedCorners(
+  { triangles, triangleCount }: MeshView, kinds: Uint8Array, positions: Float32Array, frame: Frame,
+): { corners: Uint32Array; parts: Uint32Array } {
+  const tiles = tilesAcross * tilesAcross;
+  const partOf = new Uint8Array(triangleCount);
+  const parts = new Uint32Array(tiles + 3);
+  const tile = (v: number, of: number): number => Math.max(0, Math.min(tilesAcross - 1, Math.floor((v / Math.max(of, 1e-6) + 0.5) * tilesAcross)));
+  for (let t = 0; t < triangleCount; ++t) {
+    const v = 3 * triangles[triangleWords * t];
+    const part = kinds[t] === land ? tile(positions[v + 1], frame.depth) * tilesAcross + tile(positions[v], frame.width)
+      : kinds[t] === water ? tiles : tiles + 1;
+    partOf[t] = part;
+    parts[part + 1] += 3;
+  }
+  for (let part = 1; part < parts.length; ++part) parts[part] += parts[part - 1];
+  const corners = new Uint32Array(3 * triangleCount);
+  const next = parts.slice();
+  for (let t = 0, from = 0; t < triangleCount; ++t, from += triangleWords) {
+    const to = next[partOf[t]];
+    for (let k = 0; k < 3; ++k) corners[to + k] = triangles[from + k];
+    next[partOf[t]] += 3;
+  }
+  return { corners, parts };
+}
+
+/** Where a vertex has no land, up. */
+function drawnNormals(positions: Float32Array, corners: Uint32Array, open: Float32Array): Int16Array {
+  const sums = new Float32Array(positions.length);
+  for (let i = 0; i < corners.length; i += 3) addNormal(positions, sums, 3 * corners[i], 3 * corners[i + 1], 3 * corners[i + 2]);
   const normals = new Int16Array(positions.length / 3 * 4);
-  for (let from = 0, to = 0; from < units.length; from += 3, to += 4) {
-    for (let i = 0; i < 3; ++i) normals[to + i] = Math.round(32767 * units[from + i]);
+  for (let v = 0; v < open.length; ++v) {
+    const x = sums[3 * v], y = sums[3 * v + 1], z = sums[3 * v + 2];
+    const length = Math.hypot(x, y, z);
+    const times = length > 0 ? 32767 / length : 0;
+    normals[4 * v] = Math.round(x * times);
+    normals[4 * v + 1] = Math.round(y * times);
+    normals[4 * v + 2] = length > 0 ? Math.round(z * times) : 32767;
+    normals[4 * v + 3] = Math.round(32767 * open[v]);
   }
   return normals;
+}
+
+/** Adds a triangle's normal to those of its corners, by its angle there: long slivers do not outweigh what is beside them. */
+function addNormal(p: Float32Array, sums: Float32Array, a: number, b: number, c: number): void {
+  const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+  const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+  const wx = p[c] - p[b], wy = p[c + 1] - p[b + 1], wz = p[c + 2] - p[b + 2];
+  const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+  const area = Math.sqrt(x * x + y * y + z * z);
+  if (!(area > 0)) return;
+  const first = Math.atan2(area, ux * vx + uy * vy + uz * vz), second = Math.atan2(area, -ux * wx - uy * wy - uz * wz);
+  for (let k = 0; k < 3; ++k) {
+    const at = k === 0 ? a : k === 1 ? b : c;
+    const angle = (k === 0 ? first : k === 1 ? second : Math.PI - first - second) / area;
+    sums[at] += angle * x;
+    sums[at + 1] += angle * y;
+    sums[at + 2] += angle * z;
+  }
+}
+
+/** Walls along every edge that has a triangle on one side alone. */
+function drawnWalls({ triangles, triangleCount }: MeshView, positions: Float32Array): { walls: Float32Array; wallNormals: Int16Array } {
+  const edges: number[] = [];
+  for (let t = 0, at = 0; t < triangleCount; ++t, at += triangleWords) {
+    for (let k = 0; k < 3; ++k) {
+      if (triangles[at + 3 + k] === none) edges.push(triangles[at + (k + 1) % 3], triangles[at + (k + 2) % 3]);
+    }
+  }
+  const walls = new Float32Array(8 * edges.length), wallNormals = new Int16Array(4 * edges.length);
+  for (let e = 0; e < edges.length; e += 2) {
+    const [a, b] = [3 * edges[e], 3 * edges[e + 1]];
+    const east = positions[b] - positions[a], north = positions[b + 1] - positions[a + 1];
+    const times = 32767 / (Math.hypot(east, north) || 1);
+    for (const [i, v, foot] of [[0, a, 0], [1, b, 0], [2, a, 1], [3, b, 1]] as const) {
+      walls.set([positions[v], positions[v + 1], positions[v + 2], foot], 8 * e + 4 * i);
+      wallNormals.set([Math.round(north * times), Math.round(-east * times)], 4 * e + 2 * i);
+    }
+  }
+  return { walls, wallNormals };
 }
 
 /** Every edge of the surface once, as two vertices. Cost: linear. */

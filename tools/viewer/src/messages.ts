@@ -118,3 +118,24 @@ export type FromWorker =
   | { kind: 'mended' }
   /** The trouble, as a sentence. */
   | { kind: 'error'; title: string; message: string };
+
+/** What runs before the page's module (boot) left for it. */
+export interface Boot {
+  source: Source | null;
+  worker: Worker | null;
+  early: FromWorker[];
+  /** A first picture of the source lies in the page. */
+  hasPicture?: boolean;
+  /** The Worker, begun where it is not yet. */
+  begin(): Worker;
+  /** Has the Worker open a terrain. */
+  open(source: Source): void;
+  /** Says what went wrong. `aside`: there is a terrain, which stays in sight. */
+  trouble(title: string, message: string, aside?: boolean): void;
+}
+
+declare global {
+  interface Window {
+    ptinBoot: Boot;
+  }
+}

@@ -16,6 +16,7 @@ const errorSpan = 1e4;
 export class Panel {
   private frame: Frame | null = null;
   private timer = 0;
+  private coloured: readonly [low: number, high: number] | null = null;
 
   /** @param changed is told which settings the user changed; errors only once the slider rests. */
   constructor(readonly settings: Settings, private readonly changed: (key: keyof Settings) => void) {
@@ -50,6 +51,12 @@ export class Panel {
     document.title = name;
     part('subtitle').textContent = subtitle;
     this.show();
+  }
+
+  /** The heights at both ends of the colours. */
+  setColours(heights: readonly [low: number, high: number] | null): void {
+    this.coloured = heights;
+    this.showLegend();
   }
 
   /** An interval that gives the relief some twenty lines. */
@@ -129,7 +136,7 @@ export class Panel {
     for (const key of ['exaggeration', 'azimuth', 'altitude'] as const) {
       if (Number(input(key).value) !== s[key]) input(key).value = String(s[key]);
     }
-    part('exaggeration-told').textContent = `${Number(s.exaggeration.toFixed(1))}\u00d7`;
+    part('exaggeration-told').textContent = `${Number((s.exaggeration || 1).toFixed(1))}\u00d7`;
     part('azimuth-told').textContent = `${compass(s.azimuth)} ${Math.round(s.azimuth)}\u00b0`;
     part('altitude-told').textContent = `${Math.round(s.altitude)}\u00b0`;
     part('error-told').textContent = s.error === 0 ? 'all' : `to \u00b1${number(s.error, 2)} ${sign}`;
@@ -146,7 +153,8 @@ export class Panel {
     const bar = part('legend').querySelector<HTMLElement>('i')!;
     bar.style.background = gradientOf(shading === 'slope' ? slopeStops : heightStops);
     if (this.frame === null) return;
-    const { minHeight: low, maxHeight: high } = this.frame.facts;
+    const { minHeight, maxHeight } = this.frame.facts;
+    const [low, high] = this.coloured ?? [minHeight, maxHeight];
     const told = shading === 'slope' ? ['0\u00b0', '30\u00b0', '60\u00b0']
       : [low, (low + high) / 2, high].map((h) => `${number(h, h > 999 ? 4 : 3)} ${this.sign}`);
     ['low', 'middle', 'high'].forEach((at, i) => { part(`legend-${at}`).textContent = told[i]; });

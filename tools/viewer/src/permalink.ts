@@ -10,8 +10,9 @@ import type { Pose } from './view';
 export interface Settings {
   shading: Shading;
   wireframe: boolean;
+  /** How many times as high as it is the terrain is drawn; 0: as its own relief wants it (view). */
   exaggeration: number;
-  /** Degrees: clockwise from north, above the horizon. */
+  /** Of the light, degrees: clockwise from the top of the picture, above the horizon. */
   azimuth: number;
   altitude: number;
   /** Between isolines, in the height's unit; 0: none. */
@@ -21,7 +22,7 @@ export interface Settings {
 }
 
 export const defaults: Settings = {
-  shading: 'height', wireframe: false, exaggeration: 1, azimuth: 315, altitude: 42, interval: 0, error: 0,
+  shading: 'height', wireframe: false, exaggeration: 0, azimuth: 315, altitude: 42, interval: 0, error: 0,
 };
 
 /** What was asked: a tool, places of the map, and what its form said. */

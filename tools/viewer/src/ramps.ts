@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Colours by height and by slope, as textures and as gradients of the legend.
-import { DataTexture, LinearFilter, RGBAFormat } from 'three';
 
 type Stop = readonly [share: number, r: number, g: number, b: number];
 
 /** Lowland greens over straw and ochre to rock and snow. */
 export const heightStops: readonly Stop[] = [
-  [0, 66, 112, 94], [0.08, 92, 138, 102], [0.2, 140, 168, 112], [0.34, 193, 194, 134], [0.48, 214, 189, 133],
-  [0.62, 190, 150, 106], [0.76, 154, 120, 97], [0.87, 171, 158, 149], [0.95, 218, 216, 214], [1, 248, 249, 251],
+  [0, 112, 150, 112], [0.1, 133, 168, 117], [0.22, 163, 186, 128], [0.36, 200, 203, 146], [0.5, 217, 198, 146],
+  [0.63, 201, 169, 126], [0.76, 174, 144, 117], [0.87, 186, 173, 162], [0.95, 224, 221, 217], [1, 250, 250, 252],
 ];
 
 /** From flat to 60 degrees. */
@@ -24,14 +23,12 @@ function colourAt(stops: readonly Stop[], share: number): [number, number, numbe
   return [1, 2, 3].map((i) => a[i] + part * (b[i] - a[i])) as [number, number, number];
 }
 
-export function rampTexture(stops: readonly Stop[]): DataTexture {
+/** A row of pixels, red, green, blue and 255 each. */
+export function rampPixels(stops: readonly Stop[]): Uint8Array {
   const width = 256;
   const pixels = new Uint8Array(4 * width);
   for (let i = 0; i < width; ++i) pixels.set([...colourAt(stops, i / (width - 1)), 255], 4 * i);
-  const texture = new DataTexture(pixels, width, 1, RGBAFormat);
-  texture.minFilter = texture.magFilter = LinearFilter;
-  texture.needsUpdate = true;
-  return texture;
+  return pixels;
 }
 
 export function gradientOf(stops: readonly Stop[]): string {

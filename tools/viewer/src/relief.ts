@@ -1,131 +1,152 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The scene: the relief, its edges, and the marks on it. Drawn only when something changed.
-import {
-  BufferAttribute, BufferGeometry, CanvasTexture, Color, DoubleSide, FloatType, Group, LineSegments, LinearFilter, Mesh,
-  NearestFilter, PerspectiveCamera, Points, RGBAFormat, Scene, ShaderMaterial, Sphere, Texture, Vector2, Vector3, Vector4,
-  WebGLRenderTarget, WebGLRenderer,
-} from 'three';
+// The picture: sky, relief, plinth, edges, and the marks on it. Drawn only when something changed; rougher while it moves, where
+// the card is slow.
 import type { DrawnMesh } from './drawn_mesh';
-import { GroundBelow } from './ground_below';
+import { type Place, type Seen, Marks, pageColour } from './marks';
 import type { Frame } from './frame';
-import { heightStops, rampTexture, slopeStops } from './ramps';
-import { lineFragment, lineVertex, markFragment, placeFragment, reliefFragment, reliefVertex, ribbonVertex } from './shaders';
+import { Program, texture, Vertices } from './gl';
+import { heightStops, rampPixels, slopeStops } from './ramps';
+import { groundFragment, groundVertex, skyFragment, skyVertex, wallFragment, wallVertex } from './shaders';
+import { Camera, lengthOf, sum, type Triple } from './space';
+import { tilesAcross } from './drawn_mesh';
+import type { Spread } from './surface_raster';
+import { Ground } from './triangle_grid';
 
 export type Shading = 'height' | 'slope' | 'shade';
+export type { Place } from './marks';
 
-export interface Place {
-  x: number;
-  y: number;
-  z: number;
-}
-
-/** Two directions, in degrees: clockwise from north, and above the horizon. */
+/** Where the light comes from, in degrees: clockwise from the top of the picture, and above the horizon. */
 export interface Sun {
   azimuth: number;
   altitude: number;
 }
 
+const radians = Math.PI / 180;
+/** Milliseconds: a picture that takes longer while the camera moves is drawn with fewer pixels, and whole once it rests. */
+const slowPicture = 28, restAfter = 180;
+/** Of the pixels along a side, while it moves. */
+const roughest = 0.4;
+
+const waterColour = [0.50, 0.69, 0.81], voidColour = [0.894, 0.894, 0.902], stoneColour = [0.66, 0.63, 0.59];
+
 export class Relief {
-  readonly scene = new Scene();
-  readonly camera = new PerspectiveCamera(42, 1, 1, 1e6);
-  private readonly renderer: WebGLRenderer;
-  private readonly geometry = new BufferGeometry();
-  private readonly edgeGeometry = new BufferGeometry();
-  private readonly marks = new Group();
-  private readonly edges: LineSegments;
-  private readonly mesh: Mesh;
-  private readonly pickTarget = new WebGLRenderTarget(1, 1, {
-    type: FloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter,
-  });
-  private readonly material: ShaderMaterial;
-  private readonly pickMaterial: ShaderMaterial;
-  private readonly edgeMaterial: ShaderMaterial;
-  /** In pixels of the drawing. */
-  private readonly pictureSize = new Vector2(1, 1);
-  private frame: Frame | null = null;
-  private intervalHeight = 0;
-  private ground: GroundBelow | null = null;
-  private pending = false;
+  readonly camera = new Camera();
+  /** What is drawn now. */
+  drawn: DrawnMesh | null = null;
   /** Called before each picture, for what follows the camera. Returns true when another picture is due. */
   beforeDrawing: (() => boolean) | null = null;
   pictures = 0;
+  private readonly gl: WebGL2RenderingContext;
+  private readonly plain: Program;
+  /** Made when it is needed: compiling takes as long as some pictures. */
+  private detailed: Program | null = null;
+  private readonly wall: Program;
+  private readonly sky: Program;
+  private readonly skyVertices: Vertices;
+  private readonly marks: Marks;
+  private ground: Vertices | null = null;
+  private walls: Vertices | null = null;
+  private edges: Vertices | null = null;
+  private under: Ground | null = null;
+  private frame: Frame | null = null;
+  private intervalHeight = 0;
+  private shadingNumber = 0;
+  private exaggeration = 1;
+  private edgesShown = false;
+  private sunNow: Sun = { azimuth: 315, altitude: 42 };
+  private drape: WebGLTexture | null = null;
+  private drapeWindow: readonly number[] = [0, 0, 0, 0];
+  private air = { haze: [1, 1, 1], zenith: [1, 1, 1], below: [1, 1, 1], hazeDistance: 1 };
+  private ramp: readonly [number, number] = [0, 1];
+  private pending = false;
+  /** Of a side's pixels; less than 1 while the camera moves and the card is slow. */
+  private sharpness = 1;
+  private movingSharpness = 1;
+  private restTimer = 0;
+  private size: readonly [width: number, height: number] = [1, 1];
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: 'high-performance' });
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.camera.up.set(0, 0, 1);
-    this.material = new ShaderMaterial({
-      vertexShader: reliefVertex, fragmentShader: reliefFragment, side: DoubleSide,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-      uniforms: {
-        exaggeration: { value: 1 }, shading: { value: 0 }, ramp: { value: rampTexture(heightStops) },
-        slopeRamp: { value: rampTexture(slopeStops) }, rampRange: { value: [0, 1] }, sun: { value: new Vector3(0, 0, 1) },
-        haze: { value: new Color() }, hazeDistance: { value: 1 }, interval: { value: 0 }, intervalPhase: { value: 0 },
-        isolineColour: { value: new Color(0.16, 0.1, 0.06) }, drape: { value: null },
-        drapeWindow: { value: new Vector4(0, 0, 0, 0) },
-      },
-    });
-    this.pickMaterial = new ShaderMaterial({ vertexShader: reliefVertex, fragmentShader: placeFragment, side: DoubleSide });
-    this.edgeMaterial = this.lineMaterial(new Color(0x0d1b2a), 0.24, 0);
-    this.mesh = new Mesh(this.geometry, this.material);
-    this.edges = new LineSegments(this.edgeGeometry, this.edgeMaterial);
-    for (const object of [this.mesh, this.edges]) object.frustumCulled = false;
-    this.edges.visible = false;
-    this.scene.add(this.mesh, this.edges, this.marks);
+    const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, powerPreference: 'high-performance' });
+    if (gl === null) throw new Error('no WebGL 2');
+    this.gl = gl;
+    this.plain = new Program(gl, groundVertex, groundFragment(false));
+    this.wall = new Program(gl, wallVertex, wallFragment);
+    this.sky = new Program(gl, skyVertex, skyFragment);
+    this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
+    this.marks = new Marks(gl);
+    texture(gl, 0, rampPixels(heightStops));
+    texture(gl, 1, rampPixels(slopeStops));
+    texture(gl, 2, new Uint8Array(4));
+    this.plain.sampler('ramp', 0);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.polygonOffset(1, 1);
   }
 
   setFrame(frame: Frame): void {
     this.frame = frame;
-    this.material.uniforms.rampRange.value = [0, Math.max(frame.relief, 1e-3)];
-    this.geometry.boundingSphere = new Sphere(new Vector3(), Math.hypot(frame.width, frame.depth, frame.relief) / 2);
+    this.ramp = [0, Math.max(frame.relief, 1e-3)];
     this.draw();
   }
 
   setMesh(mesh: DrawnMesh): void {
-    this.ground = new GroundBelow(mesh, Math.max((this.frame?.width ?? 0) / 64, 1e-3));
-    for (const geometry of [this.geometry, this.edgeGeometry]) geometry.dispose();
-    const positions = new BufferAttribute(mesh.positions, 3);
-    this.geometry.setAttribute('position', positions);
-    this.geometry.setAttribute('normal', new BufferAttribute(mesh.normals, 4, true));
-    this.geometry.setIndex(new BufferAttribute(mesh.corners, 1));
-    this.edgeGeometry.setAttribute('position', positions);
-    this.edgeGeometry.setIndex(null);
-    this.edgeGeometry.setDrawRange(0, 0);
+    const { gl } = this;
+    for (const old of [this.ground, this.walls, this.edges]) old?.free();
+    this.drawn = mesh;
+    this.ground = new Vertices(gl, [
+      { at: 0, numbers: mesh.positions, size: 3 }, { at: 1, numbers: mesh.normals, size: 4 },
+    ], mesh.corners);
+    this.walls = new Vertices(gl, [
+      { at: 0, numbers: mesh.walls, size: 4 }, { at: 1, numbers: mesh.wallNormals, size: 2 },
+    ], quads(mesh.walls.length / 16));
+    this.edges = null;
+    this.under = new Ground(mesh.positions, mesh.corners, mesh.grid);
+    if (mesh.spread !== null && this.frame !== null) this.ramp = colouredFrom(mesh.spread, this.frame);
     this.draw();
+  }
+
+  /** The heights at both ends of the colours; null before there is a frame. */
+  get colouredHeights(): readonly [low: number, high: number] | null {
+    const { frame, ramp } = this;
+    return frame === null ? null : [frame.heightAt(ramp[0]), frame.heightAt(ramp[1])];
   }
 
   /** z of the picture's ground at a place of the scene, without exaggeration; null where there is none. */
   groundAt(x: number, y: number): number | null {
-    return this.ground?.at(x, y) ?? null;
+    return this.under?.at(x, y) ?? null;
+  }
+
+  /** The share of `way` from a place at which the ground is met, both without exaggeration; null where it is not. */
+  meets(from: Triple, way: Triple): number | null {
+    return this.under?.meets(from, way) ?? null;
   }
 
   /** Edges of the mesh that was set last. */
   setEdges(edges: Uint32Array): void {
-    this.edgeGeometry.setIndex(new BufferAttribute(edges, 1));
-    this.edgeGeometry.setDrawRange(0, Infinity);
+    this.edges?.free();
+    this.edges = this.drawn === null ? null : new Vertices(this.gl, [{ at: 0, numbers: this.drawn.positions, size: 3 }], edges);
     this.draw();
   }
 
   set wireframe(on: boolean) {
-    this.edges.visible = on;
+    this.edgesShown = on;
     this.draw();
   }
 
   set shading(shading: Shading) {
-    this.material.uniforms.shading.value = { height: 0, slope: 1, shade: 2 }[shading];
+    this.shadingNumber = { height: 0, slope: 1, shade: 2 }[shading];
     this.draw();
   }
 
   set verticalScale(factor: number) {
-    this.scene.scale.z = this.material.uniforms.exaggeration.value = factor;
+    this.exaggeration = factor;
     this.draw();
   }
 
   set sun(sun: Sun) {
-    const azimuth = sun.azimuth * Math.PI / 180, altitude = sun.altitude * Math.PI / 180;
-    this.material.uniforms.sun.value.set(
-      Math.sin(azimuth) * Math.cos(altitude), Math.cos(azimuth) * Math.cos(altitude), Math.sin(altitude));
+    this.sunNow = { azimuth: sun.azimuth, altitude: sun.altitude };
     this.draw();
   }
 
@@ -135,51 +156,49 @@ export class Relief {
     this.draw();
   }
 
-  private placeIsolines(): void {
-    const { frame, intervalHeight } = this;
-    this.material.uniforms.interval.value = frame === null ? 0 : intervalHeight * frame.scaleZ;
-    if (frame === null || intervalHeight <= 0) return;
-    const phase = frame.baseHeight / intervalHeight;
-    this.material.uniforms.intervalPhase.value = phase - 5 * Math.floor(phase / 5);
-  }
-
-  set haze(colour: string) {
-    this.material.uniforms.haze.value.setStyle(colour);
-    // The picture goes out as it is computed, without a colour space: so do the colours of the page.
-    this.material.uniforms.haze.value.convertLinearToSRGB();
+  /** Colours of CSS: of the air at the horizon, of the sky above, and of what is below. */
+  setAir(haze: string, zenith: string, below: string): void {
+    const [h, z, b] = [haze, zenith, below].map((colour) => pageColour(colour).slice(0, 3));
+    this.air = { ...this.air, haze: h, zenith: z, below: b };
     this.draw();
   }
 
   /** Lays a picture over the terrain; null: none. Its window is on the map. */
   setDrape(picture: ImageBitmap | null, window: readonly number[]): void {
-    const { uniforms } = this.material;
-    (uniforms.drape.value as Texture | null)?.dispose();
-    uniforms.drape.value = null;
-    uniforms.drapeWindow.value.set(0, 0, 0, 0);
+    this.gl.deleteTexture(this.drape);
+    this.drape = null;
+    this.drapeWindow = [0, 0, 0, 0];
     if (picture !== null && this.frame !== null) {
       const { frame } = this;
-      const texture = new CanvasTexture(picture as unknown as HTMLCanvasElement);
-      texture.minFilter = texture.magFilter = LinearFilter;
-      texture.generateMipmaps = false;
-      texture.flipY = false;
-      uniforms.drape.value = texture;
+      this.drape = texture(this.gl, 2, picture);
       const x = frame.sceneX(window[0]), top = frame.sceneY(window[3]);
-      uniforms.drapeWindow.value.set(x, top, frame.sceneX(window[2]) - x, frame.sceneY(window[1]) - top);
+      this.drapeWindow = [x, top, frame.sceneX(window[2]) - x, frame.sceneY(window[1]) - top];
     }
     this.draw();
   }
 
+  /** Pixels of the page. */
   resize(width: number, height: number): void {
-    this.renderer.setSize(width, height, false);
-    this.renderer.getDrawingBufferSize(this.pictureSize);
-    this.camera.aspect = width / Math.max(1, height);
-    this.camera.updateProjectionMatrix();
+    this.size = [width, height];
+    Object.assign(this.camera, { width, height });
     this.draw();
   }
 
   /** Distance from which on the air is seen. */
   set hazeFrom(distance: number) {
-    this.material.uniforms.hazeDistance.value = distance;
+    this.air.hazeDistance = distance;
+  }
+
+  /** The camera moves: pictures may be rougher until it rests. */
+  moves(): void {
+    this.sharpness = this.movingSharpness;
+    clearTimeout(this.restTimer);
+    this.restTimer = window.setTimeout(() => {
+      if (this.sharpness === 1) return;
+      this.sharpness = 1;
+      this.draw();
+    }, restAfter);
+    this.draw();
   }
 
   /** Asks for a picture; however often it is asked, there is one a frame of the screen. */
@@ -188,125 +207,184 @@ export class Relief {
     this.pending = true;
     requestAnimationFrame(() => {
       this.pending = false;
-      this.placeIsolines();
       const again = this.beforeDrawing?.() ?? false;
-      this.renderer.render(this.scene, this.camera);
-      ++this.pictures;
-      if (again) this.draw();
+      this.drawNow();
+      if (again) this.moves();
     });
   }
 
-  /** The place of the terrain under a point of the canvas, in CSS pixels; null where there is none. */
+  /** The place of the terrain under a point of the canvas, in CSS pixels; null where there is none. Nothing is drawn for it. */
   pick(x: number, y: number): Place | null {
+    const { camera, exaggeration } = this;
     const { clientWidth, clientHeight } = this.canvas;
-    const { camera, renderer } = this;
-    const before = { material: this.mesh.material, edges: this.edges.visible };
-    camera.setViewOffset(clientWidth, clientHeight, Math.floor(x), Math.floor(y), 1, 1);
-    this.mesh.material = this.pickMaterial;
-    this.edges.visible = this.marks.visible = false;
-    renderer.setRenderTarget(this.pickTarget);
-    renderer.setClearColor(0, 0);
-    renderer.clear();
-    renderer.render(this.scene, camera);
-    const pixel = new Float32Array(4);
-    renderer.readRenderTargetPixels(this.pickTarget, 0, 0, 1, 1, pixel);
-    renderer.setRenderTarget(null);
-    camera.clearViewOffset();
-    this.mesh.material = before.material;
-    this.edges.visible = before.edges;
-    this.marks.visible = true;
-    return pixel[3] > 0 ? { x: pixel[0], y: pixel[1], z: pixel[2] } : null;
+    const ray = camera.ray(2 * x / clientWidth - 1, 1 - 2 * y / clientHeight);
+    const from: Triple = [camera.position[0], camera.position[1], camera.position[2] / exaggeration];
+    const way: Triple = [ray[0], ray[1], ray[2] / exaggeration];
+    const share = this.meets(from, way);
+    if (share === null) return null;
+    const [px, py, z] = sum(from, way, share);
+    return { x: px, y: py, z };
   }
 
   clearMarks(): void {
-    for (const mark of [...this.marks.children]) {
-      this.marks.remove(mark);
-      (mark as Mesh).geometry.dispose();
-      ((mark as Mesh).material as ShaderMaterial).dispose();
-    }
+    this.marks.clear();
     this.draw();
   }
 
   addMark(place: Place, colour: string, size = 13): void {
-    const material = this.lineMaterial(pageColour(colour), 1, 0.005);
-    material.fragmentShader = markFragment;
-    material.depthTest = false;
-    material.uniforms.size.value = size * Math.min(devicePixelRatio, 2);
-    this.addObject(new Points(geometryOf([place]), material), 3);
-  }
-
-  /** A line through places, which is seen through the terrain, faintly. */
-  addLine(places: readonly Place[], colour: string): void {
-    const geometry = ribbonOf(places);
-    const above = this.ribbonMaterial(pageColour(colour), 1, 0.0015);
-    const hidden = this.ribbonMaterial(pageColour(colour), 0.3, 0);
-    hidden.depthTest = false;
-    this.addObject(new Mesh(geometry, above), 2);
-    this.addObject(new Mesh(geometry, hidden), 1);
-  }
-
-  /** A translucent surface of triangles. */
-  addBody(places: readonly Place[], corners: readonly number[], colour: string): void {
-    const geometry = geometryOf(places);
-    geometry.setIndex([...corners]);
-    const material = this.lineMaterial(pageColour(colour), 0.22, 0);
-    material.side = DoubleSide;
-    this.addObject(new Mesh(geometry, material), 1);
-  }
-
-  private addObject(object: Points | Mesh, order: number): void {
-    object.frustumCulled = false;
-    object.renderOrder = order;
-    this.marks.add(object);
+    this.marks.addPoint(place, colour, size);
     this.draw();
   }
 
-  private ribbonMaterial(colour: Color, opacity: number, lift: number): ShaderMaterial {
-    const material = this.lineMaterial(colour, opacity, lift);
-    material.vertexShader = ribbonVertex;
-    material.side = DoubleSide;
-    Object.assign(material.uniforms, {
-      width: { value: 2.6 * Math.min(devicePixelRatio, 2) }, picture: { value: this.pictureSize },
-    });
-    return material;
+  addLine(places: readonly Place[], colour: string): void {
+    this.marks.addLine(places, colour);
+    this.draw();
   }
 
-  private lineMaterial(colour: Color, opacity: number, lift: number): ShaderMaterial {
-    return new ShaderMaterial({
-      vertexShader: lineVertex, fragmentShader: lineFragment, transparent: true, depthWrite: false,
-      uniforms: { colour: { value: colour }, opacity: { value: opacity }, lift: { value: lift }, size: { value: 0 } },
+  addBody(places: readonly Place[], corners: readonly number[], colour: string): void {
+    this.marks.addBody(places, corners, colour);
+    this.draw();
+  }
+
+  /** The picture as it is, as PNG. */
+  async saved(): Promise<Blob> {
+    this.sharpness = 1;
+    this.drawNow();
+    return new Promise((resolve, reject) => {
+      this.canvas.toBlob((blob) => { if (blob === null) reject(new Error('the picture is empty')); else resolve(blob); }, 'image/png');
     });
   }
-}
 
-function pageColour(colour: string): Color {
-  return new Color(colour).convertLinearToSRGB();
-}
+  private drawNow(): void {
+    const { gl, camera } = this;
+    const begin = performance.now();
+    const ratio = this.fit();
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    const seen: Seen = { matrix: camera.matrix, eye: camera.position, exaggeration: this.exaggeration };
+    this.drawGround(seen, ratio);
+    this.drawWalls(seen);
+    this.drawSky();
+    if (this.edgesShown && this.edges !== null) this.marks.drawEdges(this.edges, seen);
+    this.marks.draw(seen, [this.canvas.width, this.canvas.height], ratio);
+    ++this.pictures;
+    if (this.sharpness === this.movingSharpness && this.restTimer !== 0) this.paced(begin);
+  }
 
-function geometryOf(places: readonly Place[]): BufferGeometry {
-  const geometry = new BufferGeometry();
-  const numbers = new Float32Array(3 * places.length);
-  places.forEach((p, i) => { numbers.set([p.x, p.y, p.z], 3 * i); });
-  geometry.setAttribute('position', new BufferAttribute(numbers, 3));
-  return geometry;
-}
+  /** Makes the drawing as large as it is to be. Returns its pixels for one of the page. */
+  private fit(): number {
+    const ratio = Math.min(devicePixelRatio, 2) * this.sharpness;
+    const [width, height] = this.size.map((side) => Math.max(1, Math.round(side * ratio)));
+    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    return ratio;
+  }
 
-/** Each stretch of the line as two triangles. */
-function ribbonOf(places: readonly Place[]): BufferGeometry {
-  const geometry = new BufferGeometry();
-  const here: number[] = [], other: number[] = [], turn: number[] = [], corners: number[] = [];
-  for (let i = 1; i < places.length; ++i) {
-    const a = places[i - 1], b = places[i], first = turn.length;
-    for (const [p, q, side] of [[a, b, 1], [a, b, -1], [b, a, -1], [b, a, 1]] as const) {
-      here.push(p.x, p.y, p.z);
-      other.push(q.x, q.y, q.z);
-      turn.push(side);
+  /** While the camera moves: takes fewer pixels from now on where a picture came late after the one before. */
+  private paced(begin: number): void {
+    if (this.movedAt !== 0 && begin - this.movedAt < 250) {
+      const took = begin - this.movedAt;
+      if (took > slowPicture) this.movingSharpness = Math.max(roughest, this.movingSharpness * 0.8);
     }
-    corners.push(first, first + 1, first + 2, first + 2, first + 1, first + 3);
+    this.movedAt = begin;
   }
-  geometry.setAttribute('position', new BufferAttribute(new Float32Array(here), 3));
-  geometry.setAttribute('other', new BufferAttribute(new Float32Array(other), 3));
-  geometry.setAttribute('turn', new BufferAttribute(new Float32Array(turn), 1));
-  geometry.setIndex(corners);
-  return geometry;
+  private movedAt = 0;
+
+  private get key(): Triple {
+    const azimuth = this.sunNow.azimuth * radians + this.camera.heading, altitude = this.sunNow.altitude * radians;
+    return [Math.sin(azimuth) * Math.cos(altitude), Math.cos(azimuth) * Math.cos(altitude), Math.sin(altitude)];
+  }
+
+  private drawGround(seen: Seen, ratio: number): void {
+    const { gl, ground, drawn } = this;
+    if (ground === null || drawn === null) return;
+    const { haze, hazeDistance } = this.air;
+    const [x, y] = this.key;
+    const common = {
+      ...seen, haze, hazeDistance, key: this.key, fill: [-x * 0.8, -y * 0.8, 0.6], rampRange: this.ramp, isFlat: 0, paint: [0, 0, 0, 0],
+      hatch: ratio, ...this.details,
+    };
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    (this.hasDetails ? this.detailed ??= this.detailedMade() : this.plain).use(common);
+    for (const tile of this.tilesInSight(drawn)) ground.draw(gl.TRIANGLES, drawn.parts[tile], drawn.parts[tile + 1] - drawn.parts[tile]);
+    const tiles = tilesAcross * tilesAcross;
+    for (const [part, paint] of [[tiles, [...waterColour, 1]], [tiles + 1, [...voidColour, 2]]] as const) {
+      const count = drawn.parts[part + 1] - drawn.parts[part];
+      if (count === 0) continue;
+      this.plain.use({ ...common, isFlat: 1, paint });
+      ground.draw(gl.TRIANGLES, drawn.parts[part], count);
+    }
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+  }
+
+  private detailedMade(): Program {
+    const made = new Program(this.gl, groundVertex, groundFragment(true));
+    for (const [unit, name] of ['ramp', 'slopeRamp', 'drape'].entries()) made.sampler(name, unit);
+    return made;
+  }
+
+  /** Something is drawn that is computed a pixel. */
+  private get hasDetails(): boolean {
+    return this.shadingNumber !== 0 || this.intervalHeight > 0 || this.drape !== null;
+  }
+
+  private get details(): Record<string, number | readonly number[]> {
+    const { frame, intervalHeight } = this;
+    const hasLines = frame !== null && intervalHeight > 0;
+    const phase = hasLines ? frame.baseHeight / intervalHeight : 0;
+    return {
+      shading: this.shadingNumber, interval: hasLines ? intervalHeight * frame.scaleZ : 0, intervalPhase: phase - 5 * Math.floor(phase / 5),
+      drapeWindow: this.drapeWindow,
+    };
+  }
+
+  /** Tiles of land that may be in the picture, the nearest first: what they hide costs less. */
+  private tilesInSight({ parts, tileExtents }: DrawnMesh): number[] {
+    const { frame, camera, exaggeration } = this;
+    if (frame === null) return [];
+    const seen: Array<[distance: number, tile: number]> = [];
+    const top = frame.relief * exaggeration;
+    for (let tile = 0; tile < tilesAcross * tilesAcross; ++tile) {
+      if (parts[tile] === parts[tile + 1]) continue;
+      const [west, south, east, north] = tileExtents.subarray(4 * tile, 4 * tile + 4);
+      if (!camera.mayMeet([west, south, 0], [east, north, top])) continue;
+      seen.push([lengthOf(sum([(west + east) / 2, (south + north) / 2, 0], camera.position, -1)), tile]);
+    }
+    return seen.sort((a, b) => a[0] - b[0]).map(([, tile]) => tile);
+  }
+
+  private drawWalls(seen: Seen): void {
+    const { frame, air } = this;
+    if (this.walls === null || frame === null) return;
+    const foot = -0.03 * Math.hypot(frame.width, frame.depth);
+    this.wall.use({ ...seen, haze: air.haze, hazeDistance: air.hazeDistance, key: this.key, foot, stone: stoneColour });
+    this.walls.draw(this.gl.TRIANGLES);
+  }
+
+  private drawSky(): void {
+    const { camera, air } = this;
+    const { halfHeight } = camera;
+    const scaled = (v: Triple, times: number): Triple => sum([0, 0, 0], v, times);
+    this.sky.use({
+      haze: air.haze, zenith: air.zenith, below: air.below, ahead: camera.forward,
+      across: scaled(camera.right, halfHeight * camera.aspect), upwards: scaled(camera.up, halfHeight),
+    });
+    this.skyVertices.draw(this.gl.TRIANGLES);
+  }
+}
+
+/** Snow is above these heights, metres: on lower land the colours end below it. */
+const snowFrom = 700, snowAt = 2500;
+
+/** Scene z at both ends of the colours. */
+function colouredFrom({ low, high }: Spread, frame: Frame): readonly [number, number] {
+  const metres = frame.heightAt(high) * frame.scaleZ;
+  const share = 0.76 + 0.24 * Math.max(0, Math.min(1, (metres - snowFrom) / (snowAt - snowFrom)));
+  return [low, low + Math.max(high - low, 1e-3) / share];
+}
+
+/** Corners of quads of four vertices each. */
+function quads(count: number): Uint32Array {
+  const corners = new Uint32Array(6 * count);
+  for (let i = 0; i < count; ++i) corners.set([0, 2, 1, 1, 2, 3].map((k) => 4 * i + k), 6 * i);
+  return corners;
 }

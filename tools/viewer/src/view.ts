@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where the camera stands and what it needs: its controls, the permalink's part, and the detail that its picture shows.
+// Where the camera stands, how it moves, the permalink's part, and the detail that its picture shows. It stays above the ground.
 import { type Wanted, type Window, windowAround } from 'ptin-decoder';
-import { Box3, Frustum, Matrix4, PerspectiveCamera, Vector3 } from 'three';
-import { MapControls } from 'three/addons/controls/MapControls.js';
 import type { Frame } from './frame';
+import type { Projected } from './projected';
+import { type Camera, difference, lengthOf, sum, type Triple, turnedAround } from './space';
+import type { Spread } from './surface_raster';
 
 /** What the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
 export interface Pose {
@@ -19,72 +20,111 @@ export interface Pose {
   tilt: number;
 }
 
+/** The ground of the picture, without exaggeration. */
+export interface Surface {
+  /** z at a place; null where there is none. */
+  groundAt(x: number, y: number): number | null;
+  /** The share of a way at which the ground is met; null where it is not. */
+  meets(from: Triple, way: Triple): number | null;
+}
+
+/** A point of the picture, from -1 to 1: to the right, up. */
+export interface Point {
+  x: number;
+  y: number;
+}
+
 /** Light and colours show steps that no silhouette does: so many of them are told apart in the whole relief. */
 const leastSteps = 150;
+/** Degrees from straight down: near the horizon, and never above it. */
+const mostTilt = 86;
+/** Of the whole terrain: north at the upper left, so that its depth is seen. */
+const homeHeading = 345, homeTilt = 56;
+/** Milliseconds of a flight. */
+const flightTime = 420;
 
 const radians = Math.PI / 180;
 
 export class View {
-  readonly controls: MapControls;
+  /** Told whenever the camera moved. */
+  changed: () => void = () => undefined;
+  /** The nearest and the farthest from what is looked at, metres. */
+  leastDistance = 1;
+  mostDistance = 1e7;
   private frame: Frame | null = null;
   private home: Pose | null = null;
   private factor = 1;
+  private target: Triple = [0, 0, 0];
+  private flight: { from: Pose; to: Pose; begin: number } | null = null;
   private readonly still = matchMedia('(prefers-reduced-motion: reduce)');
 
-  constructor(readonly camera: PerspectiveCamera, canvas: HTMLCanvasElement) {
-    this.controls = new MapControls(camera, canvas);
-    this.controls.dampingFactor = 0.12;
-    this.controls.zoomToCursor = true;
-    this.controls.maxPolarAngle = 1.5;
-  }
+  constructor(readonly camera: Camera, private readonly surface: Surface) {}
 
   /** How many times as high as it is the terrain is drawn. What is looked at stays in the middle. */
   get exaggeration(): number { return this.factor; }
   set exaggeration(factor: number) {
-    const { target } = this.controls;
-    const rise = target.z * (factor / this.factor - 1);
+    const rise = this.target[2] * (factor / this.factor - 1);
     this.factor = factor;
-    target.z += rise;
-    this.camera.position.z += rise;
+    this.move([0, 0, rise]);
   }
 
-  /** `covered`: pixels at the left of the picture that something lies over. */
-  setFrame(frame: Frame, width: number, covered: number): void {
+  /** How far the place looked at is, metres. */
+  get distance(): number { return lengthOf(difference(this.camera.position, this.target)); }
+  /** The place looked at, in the scene. */
+  get lookedAt(): Triple { return this.target; }
+
+  setFrame(frame: Frame): void {
     this.frame = frame;
     const extent = Math.hypot(frame.width, frame.depth);
-    this.controls.minDistance = extent / 5000;
-    this.controls.maxDistance = extent * 6;
-    // From near, backwards, until all corners are within what is not covered.
-    const free = (width - covered) / width;
-    for (let distance = 0.4 * extent; distance < 5 * extent; distance *= 1.05) {
-      this.home = this.homeAt(frame, distance, free);
-      this.pose(this.home);
-      this.clip(frame);
-      if (this.isWhole(frame, 1 - 2 * free)) break;
-    }
-  }
-
-  private homeAt(frame: Frame, distance: number, free: number): Pose {
-    const isTall = this.camera.aspect * free < 1;
-    const middle: Pose = {
-      x: frame.middleX, y: frame.middleY, height: frame.heightAt(0.35 * frame.relief), distance, heading: 340, tilt: isTall ? 42 : 52,
+    this.leastDistance = extent / 5000;
+    this.mostDistance = extent * 6;
+    this.home = {
+      x: frame.middleX, y: frame.middleY, height: frame.heightAt(0.35 * frame.relief), distance: 0.5 * extent, heading: homeHeading,
+      tilt: homeTilt,
     };
-    // The picture's middle is that of what is not covered.
-    return moved(frame, middle, (free - 1) / 2 * this.metresPerPixel(distance, 1) * this.camera.aspect, 0);
+    this.reset();
   }
 
-  /** True when every corner of the terrain is in the picture, right of `left` (-1: its edge). */
-  private isWhole(frame: Frame, left: number): boolean {
-    this.camera.updateMatrixWorld();
-    for (const x of [-frame.width / 2, frame.width / 2]) {
-      for (const y of [-frame.depth / 2, frame.depth / 2]) {
-        for (const z of [0, frame.relief * this.exaggeration]) {
-          const at = new Vector3(x, y, z).project(this.camera);
-          if (at.z > 1 || at.x < left + 0.02 || at.x > 0.95 || Math.abs(at.y) > 0.86) return false;
-        }
+  /** Has another frame of the same terrain, a little more exact; the camera stays. */
+  replaceFrame(frame: Frame): void { this.frame = frame; }
+
+  /** Goes where the ground fills the picture, which lies within an extent of the scene; `z`: its middle height. This is the home. */
+  fillWith(extent: { west: number; south: number; east: number; north: number }, z: number): void {
+    const { frame } = this;
+    if (frame === null) return;
+    const x = (extent.west + extent.east) / 2, y = (extent.south + extent.north) / 2;
+    const whole = Math.hypot(extent.east - extent.west, extent.north - extent.south);
+    // A tall picture is filled by ground that is seen from higher up.
+    const tilt = homeTilt - 12 * Math.max(0, Math.min(1, 2 * (1 - this.camera.aspect)));
+    let best = -Infinity;
+    // The picture is to be full, and to show much.
+    for (let distance = 0.36 * whole; distance < 0.9 * whole; distance *= 1.08) {
+      for (const ahead of [-0.12, -0.06, 0, 0.06]) {
+        const pose = moved(frame, {
+          x: frame.mapX(x), y: frame.mapY(y), height: frame.heightAt(z), distance, heading: homeHeading, tilt,
+        }, 0, ahead * whole);
+        this.place(pose);
+        const merit = this.fullness(z * this.factor) + 0.36 * Math.log(distance / whole);
+        if (merit > best) [best, this.home] = [merit, pose];
       }
     }
-    return true;
+    this.reset();
+  }
+
+  /** The share of the picture below its upper sixth in which there is ground of a middle height. */
+  private fullness(z: number): number {
+    const { camera } = this;
+    const across = 12, rows = 10;
+    let met = 0;
+    for (let i = 0; i <= across; ++i) {
+      for (let j = 0; j <= rows; ++j) {
+        const ray = camera.ray(2 * i / across - 1, 1.66 * j / rows - 1);
+        if (ray[2] >= 0) continue;
+        const [px, py] = sum(camera.position, ray, (z - camera.position[2]) / ray[2]);
+        if (this.surface.groundAt(px, py) !== null) ++met;
+      }
+    }
+    return met / ((across + 1) * (rows + 1));
   }
 
   reset(): void {
@@ -92,92 +132,193 @@ export class View {
   }
 
   pose(pose: Pose): void {
-    const { frame } = this;
+    this.flight = null;
+    this.place(pose);
+    this.changed();
+  }
+
+  private place(pose: Pose): void {
+    const { frame, camera } = this;
     if (frame === null) return;
-    // Straight from above the picture would have no direction.
-    const heading = pose.heading * radians, tilt = Math.max(pose.tilt, 0.01) * radians;
-    const back = new Vector3(-Math.sin(heading) * Math.sin(tilt), -Math.cos(heading) * Math.sin(tilt), Math.cos(tilt));
-    const { target } = this.controls;
-    target.set(frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * this.exaggeration);
-    this.camera.position.copy(target).addScaledVector(back, pose.distance);
-    this.controls.update();
+    this.target = [frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * this.factor];
+    camera.heading = pose.heading * radians;
+    camera.tilt = Math.max(0, Math.min(mostTilt, pose.tilt)) * radians;
+    camera.position = sum(this.target, camera.forward, -pose.distance);
   }
 
   /** The pose now. */
   get current(): Pose | null {
-    const { frame } = this;
+    const { frame, target, camera } = this;
     if (frame === null) return null;
-    const { target } = this.controls;
-    const back = this.camera.position.clone().sub(target);
-    const distance = back.length();
     return {
-      x: frame.mapX(target.x), y: frame.mapY(target.y), height: frame.heightAt(target.z / this.exaggeration), distance,
-      heading: (Math.atan2(-back.x, -back.y) / radians + 360) % 360,
-      tilt: Math.acos(Math.max(-1, Math.min(1, back.z / distance))) / radians,
+      x: frame.mapX(target[0]), y: frame.mapY(target[1]), height: frame.heightAt(target[2] / this.factor), distance: this.distance,
+      heading: (camera.heading / radians % 360 + 360) % 360, tilt: camera.tilt / radians,
     };
   }
 
-  /**
-   * Follows the controls; true while they still move. Clips the view around the terrain.
-   * `groundAt`: the ground at a place of the scene, not exaggerated; null where there is none.
-   */
-  update(groundAt: (x: number, y: number) => number | null): boolean {
-    this.controls.enableDamping = !this.still.matches;
-    const moved = this.controls.update();
-    if (this.frame !== null) {
-      this.stayWithin();
-      this.stayAbove(this.frame, groundAt);
-      this.clip(this.frame);
+  /** Goes to a pose, in a moment unless the user wants no motion. */
+  flyTo(to: Pose): void {
+    const from = this.current;
+    if (from === null) return;
+    if (this.still.matches) this.pose(to);
+    else this.flight = { from, to, begin: performance.now() };
+    this.changed();
+  }
+
+  flyHome(): void {
+    if (this.home !== null) this.flyTo(this.home);
+  }
+
+  /** Turns until north is up. */
+  turnNorth(): void {
+    const { current } = this;
+    if (current !== null) this.flyTo({ ...current, heading: 0 });
+  }
+
+  /** Before a picture: goes on with a flight, and stays out of the ground. True while the camera still moves. */
+  update(): boolean {
+    const { frame, flight } = this;
+    if (frame === null) return false;
+    if (flight !== null) {
+      const share = Math.min(1, (performance.now() - flight.begin) / flightTime);
+      this.place(between(flight.from, flight.to, share * share * (3 - 2 * share)));
+      if (share === 1) this.flight = null;
+      this.changed();
     }
-    return moved;
+    this.stayAbove(frame);
+    this.clip(frame);
+    return this.flight !== null;
   }
 
-  /**
-   * Keeps the camera off its nearest and its farthest by more than a rounding. The controls find a distance that is beyond these by a
-   * rounding changed each time, so that the picture would be drawn for ever.
-   */
-  private stayWithin(): void {
-    const { minDistance, maxDistance, target } = this.controls;
-    this.camera.position.sub(target).clampLength(minDistance * (1 + 1e-9), maxDistance * (1 - 1e-9)).add(target);
-  }
-
-  /** Lifts the camera out of the ground, and over the lowest ground beside the terrain and in voids. */
-  private stayAbove(frame: Frame, groundAt: (x: number, y: number) => number | null): void {
-    const { position } = this.camera;
-    const least = Math.max(2e-5 * this.controls.maxDistance, 0.02 * position.distanceTo(this.controls.target));
-    if (position.z >= frame.relief * this.exaggeration + least) return;
-    const ground = (groundAt(position.x, position.y) ?? 0) * this.exaggeration;
-    if (position.z >= ground + least) return;
-    position.z = ground + least;
-    this.camera.lookAt(this.controls.target);
-  }
-
-  /** Which windows of the map are in the picture, or may be: whatever lies between the least and the greatest height there. */
-  seenWindows(frame: Frame): (window: Window) => boolean {
+  /** Lifts the camera out of the ground, and over the lowest ground beside the terrain. It looks at the same place as before. */
+  private stayAbove(frame: Frame): void {
     const { camera } = this;
-    camera.updateMatrixWorld();
-    const frustum = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse));
-    const box = new Box3();
-    const top = frame.relief * this.exaggeration;
-    return ([west, south, east, north]) => {
-      box.min.set(frame.sceneX(west), frame.sceneY(south), 0);
-      box.max.set(frame.sceneX(east), frame.sceneY(north), top);
-      return frustum.intersectsBox(box);
-    };
-  }
-
-  /** The direction across the picture, on the ground of the scene. */
-  get across(): Vector3 {
-    return new Vector3(1, 0, 0).applyQuaternion(this.camera.quaternion).setZ(0).normalize();
+    const [x, y, z] = camera.position;
+    const least = Math.max(1.2e-4 * Math.hypot(frame.width, frame.depth), 0.02 * this.distance);
+    if (z >= frame.relief * this.factor + least) return;
+    let ground = 0;
+    for (const [east, north] of [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      ground = Math.max(ground, (this.surface.groundAt(x + least * east, y + least * north) ?? 0) * this.factor);
+    }
+    if (z >= ground + least) return;
+    camera.position = [x, y, ground + least];
+    const way = difference(this.target, camera.position);
+    const flat = Math.hypot(way[0], way[1]);
+    if (flat > 1e-9) camera.heading = Math.atan2(way[0], way[1]);
+    camera.tilt = Math.min(mostTilt * radians, Math.atan2(flat, -way[2]));
+    this.target = sum(camera.position, camera.forward, Math.max(this.leastDistance, lengthOf(way)));
   }
 
   /** Near and far are around the terrain, wherever the camera is. */
   private clip(frame: Frame): void {
     const { camera } = this;
-    camera.near = Math.max(camera.position.distanceTo(this.controls.target) / 2000, 0.05);
-    camera.far = camera.position.length() + 2 * Math.hypot(frame.width, frame.depth, frame.relief);
-    camera.updateProjectionMatrix();
+    const away = lengthOf(camera.position);
+    const clearance = camera.position[2] - (this.surface.groundAt(camera.position[0], camera.position[1]) ?? 0) * this.factor;
+    camera.near = Math.max(0.05, Math.min(this.distance, Math.max(clearance, 0)) / 20);
+    camera.far = away + 2 * Math.hypot(frame.width, frame.depth, frame.relief * this.factor);
   }
+
+  /** The place of the scene at a point of the picture, exaggerated: on the ground, or on a plane through what is looked at. */
+  private placeAt({ x, y }: Point): Triple {
+    const { camera, factor } = this;
+    const ray = camera.ray(x, y);
+    const [px, py, pz] = camera.position;
+    const share = this.surface.meets([px, py, pz / factor], [ray[0], ray[1], ray[2] / factor]);
+    if (share !== null) return sum(camera.position, ray, share);
+    return this.onPlane(ray, this.target[2]);
+  }
+
+  /** Where a ray meets a level; along a flat one not farther than twice what is looked at. */
+  private onPlane(ray: Triple, z: number): Triple {
+    const { camera } = this;
+    const share = (z - camera.position[2]) / ray[2];
+    return sum(camera.position, ray, share > 0 ? Math.min(share, 2 * this.distance) : 2 * this.distance);
+  }
+
+  private move(way: Triple): void {
+    this.target = sum(this.target, way);
+    this.camera.position = sum(this.camera.position, way);
+  }
+
+  /** Has what was at a point of the picture come to another one. `z`: the level that moves (`levelAt`). */
+  drag(from: Point, to: Point, z: number): void {
+    const { frame, camera } = this;
+    if (frame === null) return;
+    this.flight = null;
+    const [x, y] = difference(this.onPlane(camera.ray(from.x, from.y), z), this.onPlane(camera.ray(to.x, to.y), z));
+    const clamp = (v: number, most: number): number => Math.max(-most, Math.min(most, v));
+    const most = 0.6;
+    this.move([
+      clamp(this.target[0] + x, most * frame.width) - this.target[0], clamp(this.target[1] + y, most * frame.depth) - this.target[1], 0,
+    ]);
+    this.changed();
+  }
+
+  /** The level of the ground at a point of the picture. */
+  levelAt(point: Point): number { return this.placeAt(point)[2]; }
+
+  /** What the camera goes round, at a point of the picture. */
+  pivotAt(point: Point): Triple { return this.placeAt(point); }
+
+  /** Goes round a place: degrees that the heading and the tilt grow by. */
+  orbit(pivot: Triple, turn: number, tilt: number): void {
+    const { camera } = this;
+    this.flight = null;
+    const most = Math.max(-camera.tilt, Math.min(mostTilt * radians - camera.tilt, tilt * radians));
+    const around = (axis: Triple, angle: number): void => {
+      camera.position = sum(pivot, turnedAround(difference(camera.position, pivot), axis, angle));
+      this.target = sum(pivot, turnedAround(difference(this.target, pivot), axis, angle));
+    };
+    around(camera.right, most);
+    camera.tilt += most;
+    around([0, 0, 1], -turn * radians);
+    camera.heading += turn * radians;
+    this.changed();
+  }
+
+  /** After a gesture: what is looked at is the ground in the picture's middle. */
+  settle(): void {
+    const { camera, factor } = this;
+    const [x, y, z] = camera.position, ray = camera.forward;
+    const share = this.surface.meets([x, y, z / factor], [ray[0], ray[1], ray[2] / factor]);
+    if (share !== null && share > this.leastDistance && share < this.mostDistance) this.target = sum(camera.position, ray, share);
+  }
+
+  /** Nearer to what is at a point of the picture, or farther from it: `factor` of the way is left. */
+  zoomAt(point: Point, factor: number): void {
+    this.flight = null;
+    const pivot = this.placeAt(point);
+    const away = lengthOf(difference(this.camera.position, pivot));
+    const share = Math.max(Math.min(1, this.leastDistance / away), Math.min(factor, Math.max(1, this.mostDistance / this.distance)));
+    this.camera.position = sum(pivot, difference(this.camera.position, pivot), share);
+    this.target = sum(pivot, difference(this.target, pivot), share);
+    this.settle();
+    this.changed();
+  }
+
+  /** Which windows of the map are in the picture, or may be: whatever lies between the least and the greatest height there. */
+  seenWindows(frame: Frame): (window: Window) => boolean {
+    const { camera } = this;
+    const top = frame.relief * this.exaggeration;
+    return ([west, south, east, north]) =>
+      camera.mayMeet([frame.sceneX(west), frame.sceneY(south), 0], [frame.sceneX(east), frame.sceneY(north), top]);
+  }
+
+  /**
+   * Where a place of the scene, without exaggeration, is on the page's canvas, in pixels; `visible`: it is in the picture. What may
+   * hide it is not asked.
+   */
+  project(x: number, y: number, z: number): Projected {
+    const { camera } = this;
+    const at = camera.project([x, y, z * this.factor]);
+    if (at === null) return { x: 0, y: 0, visible: false };
+    return {
+      x: (at.x + 1) / 2 * camera.width, y: (1 - at.y) / 2 * camera.height, visible: Math.abs(at.x) <= 1 && Math.abs(at.y) <= 1,
+    };
+  }
+
+  /** The direction across the picture, on the ground of the scene. */
+  get across(): Triple { return this.camera.right; }
 
   /** To the right and away from the camera: shares of the picture. */
   pan(right: number, ahead: number): void {
@@ -185,8 +326,7 @@ export class View {
   }
 
   zoom(factor: number): void {
-    const { minDistance, maxDistance } = this.controls;
-    this.change((now) => ({ ...now, distance: Math.min(maxDistance, Math.max(minDistance, now.distance * factor)) }));
+    this.change((now) => ({ ...now, distance: Math.min(this.mostDistance, Math.max(this.leastDistance, now.distance * factor)) }));
   }
 
   /** Degrees: the camera goes round to the left of the picture. */
@@ -196,8 +336,7 @@ export class View {
 
   /** Degrees: more looks farther towards the horizon. */
   tilt(degrees: number): void {
-    const most = this.controls.maxPolarAngle / radians;
-    this.change((now) => ({ ...now, tilt: Math.max(0, Math.min(most, now.tilt + degrees)) }));
+    this.change((now) => ({ ...now, tilt: Math.max(0, Math.min(mostTilt, now.tilt + degrees)) }));
   }
 
   private change(next: (now: Pose, frame: Frame) => Pose): void {
@@ -207,7 +346,7 @@ export class View {
 
   /** Metres that a pixel shows at a distance, for a canvas of so many pixels in height. */
   metresPerPixel(distance: number, pixels: number): number {
-    return 2 * distance * Math.tan(this.camera.fov / 2 * radians) / Math.max(1, pixels);
+    return 2 * distance * this.camera.halfHeight / Math.max(1, pixels);
   }
 
   /**
@@ -237,18 +376,17 @@ export class View {
     const places = [];
     const middle = 0.4 * frame.relief * this.exaggeration;
     const { camera } = this;
-    camera.updateMatrixWorld();
     const columns = 12, rows = 12;
     for (let i = 0; i <= columns; ++i) {
       for (let j = 0; j <= rows; ++j) {
-        const ray = new Vector3(2 * i / columns - 1, 2 * j / rows - 1, 0.5).unproject(camera).sub(camera.position).normalize();
-        const reach = ray.z < -1e-3 ? (middle - camera.position.z) / ray.z : Infinity;
+        const ray = camera.ray(2 * i / columns - 1, 2 * j / rows - 1);
+        const reach = ray[2] < -1e-3 ? (middle - camera.position[2]) / ray[2] : Infinity;
         const distance = Math.min(reach > 0 ? reach : camera.far, camera.far);
-        const x = camera.position.x + ray.x * distance, y = camera.position.y + ray.y * distance;
+        const x = camera.position[0] + ray[0] * distance, y = camera.position[1] + ray[1] * distance;
         const inX = Math.max(-frame.width / 2, Math.min(frame.width / 2, x));
         const inY = Math.max(-frame.depth / 2, Math.min(frame.depth / 2, y));
         if (Math.hypot(x - inX, y - inY) > 0.3 * Math.hypot(frame.width, frame.depth) && reach !== Infinity) continue;
-        places.push({ x: inX, y: inY, distance: camera.position.distanceTo(new Vector3(inX, inY, middle)) });
+        places.push({ x: inX, y: inY, distance: lengthOf(difference(camera.position, [inX, inY, middle])) });
       }
     }
     return places;
@@ -261,4 +399,24 @@ function moved(frame: Frame, pose: Pose, right: number, ahead: number): Pose {
   return {
     ...pose, x: pose.x + (right * cosine + ahead * sine) / frame.scaleX, y: pose.y + (ahead * cosine - right * sine) / frame.scaleY,
   };
+}
+
+/** A pose on the way between two, which turns the shorter way round. */
+function between(from: Pose, to: Pose, share: number): Pose {
+  const mix = (a: number, b: number): number => a + share * (b - a);
+  const turn = ((to.heading - from.heading) % 360 + 540) % 360 - 180;
+  return {
+    x: mix(from.x, to.x), y: mix(from.y, to.y), height: mix(from.height, to.height), distance: from.distance * (to.distance / from.distance) ** share,
+    heading: from.heading + share * turn, tilt: mix(from.tilt, to.tilt),
+  };
+}
+
+/** Steps in which people read a factor. */
+const factors = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10, 12];
+
+/** How many times as high as it is a terrain is drawn where its user says nothing: lowland more, high mountains little or not. */
+export function usualExaggeration(frame: Frame, spread: Spread): number {
+  const extent = Math.sqrt(frame.width * frame.depth);
+  const wanted = (0.15 * extent / Math.max(spread.most - spread.least, 1e-6)) ** 0.55;
+  return [...factors].reverse().find((factor) => factor <= wanted * 1.08) ?? 1;
 }

@@ -2,36 +2,31 @@
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
 import { type Certificate, certifiedAt, certifiedWithin, holds, type Problem } from 'ptin-decoder';
-import { Vector3 } from 'three';
+import { Compass } from './compass';
+import { type DrawnMesh, drawnMesh, surfaceEnd } from './drawn_mesh';
 import { scaleAt } from './earth';
+import { type FirstMesh, firstMeshOf } from './first_mesh';
 import { bytes, coordinates, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
+import { Gestures } from './gestures';
 import { Inquiry } from './inquiry';
 import { lineInFile } from './lines_in_file';
-import type { FromWorker, Source, Status, ToWorker } from './messages';
+import type { Boot, FromWorker, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
 import { Overlay } from './overlay';
 import { Panel } from './panel';
 import { Peaks } from './peaks';
 import { askedInHash, askedToHash, type Settings, fromHash, toHash } from './permalink';
 import { savePicture } from './picture_export';
-import type { Projected } from './projected';
 import { type Place, Relief } from './relief';
 import { Service } from './service';
-import { View } from './view';
+import { difference, lengthOf } from './space';
+import { usualExaggeration, View } from './view';
 
-interface Boot {
-  source: Source | null;
-  worker: Worker | null;
-  early: FromWorker[];
-  /** Has the Worker open a terrain. */
-  open(source: Source): void;
-  /** Says what went wrong. `aside`: there is a terrain, which stays in sight. */
-  trouble(title: string, message: string, aside: boolean): void;
-}
-
+/** Vertices of a mesh whose heights are spread as the terrain's are. */
+const enoughToTell = 200;
 /** Pixels by which a picture of a service's terrain may be off. */
-const tolerance = 0.3;
+const tolerance = 0.6;
 
 class Viewer {
   private readonly relief: Relief;
@@ -39,7 +34,12 @@ class Viewer {
   private readonly panel: Panel;
   private readonly inquiry: Inquiry;
   private readonly overlay: Overlay;
-  private readonly worker: Worker;
+  private readonly compass: Compass;
+  private worker: Worker | null;
+  /** For the Worker, until it is begun. */
+  private readonly unsent: ToWorker[] = [];
+  /** The vertices of the picture that lay in the page; a mesh that has come only so far is not shown. */
+  private firstVertices = 0;
   private frame: Frame | null = null;
   /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate | null }) | null = null;
@@ -51,30 +51,74 @@ class Viewer {
   private isTroubled = false;
   private placeTimer = 0;
   private attribution = '';
+  /** With which the page was opened. */
+  private readonly linkPose = fromHash(location.hash).pose;
+  /** The first sight is chosen. */
+  private isSighted = false;
 
   constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
-    this.worker = boot.worker!;
+    this.worker = boot.worker;
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
-    this.view = new View(this.relief.camera, canvas);
+    this.view = new View(this.relief.camera, this.relief);
+    new Gestures(canvas, this.view);
+    this.compass = new Compass(() => { this.view.turnNorth(); });
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
     this.inquiry = this.madeInquiry();
     this.overlay = this.madeOverlay();
     part('viewshed-tool').hidden = !this.isServed;
     for (const key of Object.keys(this.panel.settings) as Array<keyof Settings>) this.apply(key);
     this.relief.beforeDrawing = () => this.beforeDrawing();
-    this.view.controls.addEventListener('change', () => { this.moved(); });
+    this.view.changed = () => { this.moved(); };
     this.followPage(canvas);
     this.followPointer(canvas);
     addEventListener('keydown', (event) => { this.key(event); });
+    if (boot.hasPicture === true) this.showFirst();
+    else this.listen();
+  }
+
+  private listen(): void {
+    const { boot } = this;
+    this.worker = boot.begin();
     this.worker.onmessage = (event: MessageEvent<FromWorker>) => { this.take(event.data); };
     for (const message of boot.early.splice(0)) this.take(message);
+    for (const message of this.unsent.splice(0)) this.worker.postMessage(message);
+  }
+
+  /** Draws the picture that lies in the page; only then the Worker begins, so that what this needs comes first. */
+  private showFirst(): void {
+    let first: FirstMesh | null = null;
+    try {
+      first = firstMeshOf(part('first-mesh').textContent ?? '');
+    } catch (error) {
+      // The stream brings the same, later.
+      console.warn(`the first picture: ${(error as Error).message}`);
+    }
+    if (first !== null) this.drawFirst(first);
+    requestAnimationFrame(() => { setTimeout(() => {
+      if (this.boot.source !== null) this.boot.open(this.boot.source);
+      this.listen();
+    }); });
+  }
+
+  private drawFirst({ frame, mesh, certified }: FirstMesh): void {
+    const { vertexCount: vertices, triangleCount: triangles } = mesh;
+    this.frame = frame;
+    this.relief.setFrame(frame);
+    this.view.setFrame(frame);
+    this.poseOfLink();
+    this.take({
+      kind: 'mesh', mesh: drawnMesh(mesh, frame),
+      status: { vertices, triangles, splits: 0, splitsInAll: 0, certified, bytes: 0, bytesInAll: 0, state: 'loading' },
+    });
+    this.firstVertices = vertices;
+    this.moved();
   }
 
   private madeInquiry(): Inquiry {
     return new Inquiry({
-      relief: this.relief, frame: () => this.frame, send: (m) => { this.send(m); }, project: (place) => this.project(place),
+      relief: this.relief, frame: () => this.frame, send: (m) => { this.send(m); }, project: ({ x, y, z }) => this.view.project(x, y, z),
       pan: (right, ahead) => { this.view.pan(right, ahead); this.moved(); }, zoom: (factor) => { this.view.zoom(factor); this.moved(); },
       changed: () => { this.keepLink(); },
     });
@@ -84,40 +128,37 @@ class Viewer {
     const { source } = this.boot;
     const service = source?.kind === 'collection' ? new Service(source.service, source.id) : null;
     return new Overlay({
-      canvas: this.relief.canvas, frame: () => this.frame, project: (place) => this.project(place),
+      canvas: this.relief.canvas, frame: () => this.frame, project: ({ x, y, z }) => this.view.project(x, y, z),
       pick: (x, y) => this.relief.pick(x, y), depth: (place) => this.depth(place),
       window: () => this.view.wanted(this.relief.canvas.clientHeight, tolerance)[0]?.window ?? null,
       interval: () => this.panel.settings.interval,
     }, service === null ? null : new Peaks((window) => service.highest(window)));
   }
 
-  /** Where a place of the scene is in the picture. */
-  private project(place: Place): Projected {
-    const { camera, canvas: { clientWidth, clientHeight } } = this.relief;
-    const at = new Vector3(place.x, place.y, place.z * this.view.exaggeration).project(camera);
-    const isWithin = Math.abs(at.x) < 1 && Math.abs(at.y) < 1 && at.z < 1;
-    return { x: (at.x + 1) / 2 * clientWidth, y: (1 - at.y) / 2 * clientHeight, visible: isWithin };
-  }
-
-  private depth(place: Place): number {
-    return this.relief.camera.position.distanceTo(new Vector3(place.x, place.y, place.z * this.view.exaggeration));
+  private depth({ x, y, z }: Place): number {
+    return lengthOf(difference(this.relief.camera.position, [x, y, z * this.view.exaggeration]));
   }
 
   private send(message: ToWorker): void {
-    this.worker.postMessage(message);
+    if (this.worker === null) this.unsent.push(message);
+    else this.worker.postMessage(message);
   }
 
   private take(message: FromWorker): void {
     switch (message.kind) {
       case 'terrain': this.introduce(message); break;
       case 'mesh':
+        if (message.status.vertices < this.firstVertices && message.status.state === 'loading') break;
+        this.firstVertices = 0;
         this.relief.setMesh(message.mesh);
-        this.overlay.setMesh(message.mesh);
+        this.overlay.setMesh({ ...message.mesh, corners: message.mesh.corners.subarray(0, surfaceEnd(message.mesh.parts)) });
+        this.panel.setColours(this.relief.colouredHeights);
+        this.firstSight(message.mesh, message.status);
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);
         break;
       case 'edges': this.relief.setEdges(message.edges); break;
-      case 'status': this.show(message.status); break;
+      case 'status': if (this.firstVertices === 0) this.show(message.status); break;
       case 'answer':
       case 'refused': this.inquiry.take(message); break;
       case 'mended':
@@ -141,11 +182,27 @@ class Viewer {
     part('scale').hidden = earth.lengths.metres === null;
     this.panel.setFrame(frame, message.name, `${size}${about.crs === '' ? '' : ` \u00b7 ${about.crs}`}${unknown}`, about.attribution);
     this.attribution = about.attribution;
-    const { pose } = fromHash(location.hash);
-    const { width, height } = this.relief.canvas.getBoundingClientRect();
-    const card = part('card').getBoundingClientRect();
-    this.view.setFrame(frame, width, card.width < width / 2 && width > height ? card.right : 0);
-    if (pose !== null) this.view.pose(pose);
+    if (this.firstVertices > 0) {
+      this.view.replaceFrame(frame);
+    } else {
+      this.view.setFrame(frame);
+      this.poseOfLink();
+    }
+    this.moved();
+  }
+
+  private poseOfLink(): void {
+    if (this.linkPose !== null) this.view.pose(this.linkPose);
+  }
+
+  /** Once enough is there to tell the relief: shows it high enough, and has it fill the picture, unless the link says otherwise. */
+  private firstSight({ spread, extent }: DrawnMesh, { vertices, state }: Status): void {
+    const { frame } = this;
+    if (this.isSighted || frame === null || spread === null || (vertices < enoughToTell && state === 'loading')) return;
+    this.isSighted = true;
+    if (this.panel.settings.exaggeration === 0) this.panel.set('exaggeration', usualExaggeration(frame, spread));
+    this.view.fillWith(extent, spread.low + 0.3 * (spread.high - spread.low));
+    this.poseOfLink();
     this.moved();
     const asked = askedInHash(location.hash);
     if (asked !== null) this.inquiry.follow(asked);
@@ -187,14 +244,15 @@ class Viewer {
       this.relief.wireframe = s.wireframe;
       this.send({ kind: 'edges', wanted: s.wireframe });
     }
-    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration;
+    if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration || 1;
     this.keepLink();
   }
 
   private beforeDrawing(): boolean {
-    const moves = this.view.update((x, y) => this.relief.groundAt(x, y));
-    const distance = this.relief.camera.position.distanceTo(this.view.controls.target);
+    const moves = this.view.update();
+    const { distance, current } = this.view;
     this.relief.hazeFrom = 1.1 * distance;
+    if (current !== null) this.compass.show(current.heading, current.tilt);
     this.showScale(distance);
     this.overlay.drawn();
     if (this.status !== null) {
@@ -207,7 +265,7 @@ class Viewer {
 
   /** The camera moved. */
   private moved(): void {
-    this.relief.draw();
+    this.relief.moves();
     this.keepLink();
     if (!this.isServed) return;
     clearTimeout(this.viewTimer);
@@ -235,10 +293,9 @@ class Viewer {
     const { frame, view } = this;
     if (frame === null || frame.earth.lengths.metres === null) return;
     const { canvas } = this.relief;
-    const target = view.controls.target;
-    const [x, y] = scaleAt(frame.earth, frame.mapY(target.y));
-    const across = view.across;
-    const stretch = Math.hypot(across.x * x / frame.scaleX, across.y * y / frame.scaleY);
+    const [x, y] = scaleAt(frame.earth, frame.mapY(view.lookedAt[1]));
+    const [east, north] = view.across;
+    const stretch = Math.hypot(east * x / frame.scaleX, north * y / frame.scaleY);
     const metre = 1 / (stretch * view.metresPerPixel(distance, canvas.clientHeight));
     const length = roundBelow(Math.min(130, canvas.clientWidth / 4) / metre);
     const scale = part('scale');
@@ -251,7 +308,7 @@ class Viewer {
     new ResizeObserver(resize).observe(canvas);
     resize();
     const dark = matchMedia('(prefers-color-scheme: dark)');
-    const recolour = (): void => { this.relief.haze = colour('haze'); };
+    const recolour = (): void => { this.relief.setAir(colour('haze'), colour('sky-top'), colour('ground-low')); };
     dark.addEventListener('change', recolour);
     recolour();
     canvas.addEventListener('webglcontextlost', () => {
@@ -290,7 +347,7 @@ class Viewer {
       part('crosshair').hidden = true;
       if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
     });
-    // A place costs a drawing of everything: it is told where the pointer rests.
+    // A place is told where the pointer rests: numbers that run are not read.
     canvas.addEventListener('pointermove', (e) => {
       clearTimeout(this.placeTimer);
       part('crosshair').hidden = true;
@@ -360,8 +417,7 @@ class Viewer {
   }
 
   private home(): void {
-    this.view.reset();
-    this.moved();
+    this.view.flyHome();
   }
 
   private async copyLink(): Promise<void> {
@@ -400,6 +456,7 @@ class Viewer {
     ',': () => { this.view.turn(-10); },
     '.': () => { this.view.turn(10); },
     r: () => { this.home(); },
+    n: () => { this.view.turnNorth(); },
     w: () => { this.panel.set('wireframe', !this.panel.settings.wireframe); },
     i: () => { this.panel.set('interval', this.panel.settings.interval > 0 ? 0 : this.panel.usualInterval); },
     1: () => { this.panel.set('shading', 'height'); },
@@ -462,7 +519,7 @@ function start(boot: Boot): void {
 }
 
 if (new URLSearchParams(location.search).has('embed')) document.body.classList.add('embed');
-const boot = (window as unknown as { ptinBoot: Boot }).ptinBoot;
+const boot = window.ptinBoot;
 if (location.protocol === 'file:') {
   // The page itself has told it (index.html).
 } else if (boot.source === null) {

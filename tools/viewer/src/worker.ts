@@ -2,7 +2,7 @@
 //
 // The Worker: opens a terrain, hands the page meshes to draw, and passes its questions on.
 import { type Certified, DecodeError, type Decoder, HostedBytes, mapCrsOf, Problem, toldBy } from 'ptin-decoder';
-import { drawnMesh, surfaceEdges } from './drawn_mesh';
+import { buffersOf, drawnMesh, surfaceEdges } from './drawn_mesh';
 import { earthOf } from './earth';
 import { moduleAt } from './fetching';
 import { FileView } from './file_view';
@@ -108,7 +108,7 @@ class Session {
     const made = drawnMesh(mesh, frame);
     this.drawn = { decoder, vertices: mesh.vertexCount, numbering };
     this.drawnCertified = certified;
-    say({ kind: 'mesh', mesh: made, status: this.status }, [made.positions.buffer, made.normals.buffer, made.corners.buffer]);
+    say({ kind: 'mesh', mesh: made, status: this.status }, buffersOf(made));
     if (this.edgesWanted) this.sendEdges(true);
     this.lastDrawn = performance.now();
     this.drawingTook = this.lastDrawn - begin;

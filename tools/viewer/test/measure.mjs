@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How fast streams are decoded and shown, how large the page is, and what a service sends until there is a picture.
+// With a browser: when the first picture is there, also at 1 Mbit/s and 80 ms, and how long a picture takes while the camera flies.
 // usage: node measure.mjs STREAM...    CHROMIUM=path measures the page in a browser, too, with pictures by software
 //        CHROMIUM=path node measure.mjs http://127.0.0.1:8080/collections/ID...    a terrain of a service, in a browser
 import { execFileSync } from 'node:child_process';
@@ -21,7 +22,7 @@ const marks = ['ptin-first-picture', 'ptin-settled'];
 const isService = (given) => /^http:\/\//.test(given);
 
 let packed = 0;
-for (const name of ['index.html', 'viewer.js', 'worker.js', 'decoder.wasm', 'questions.wasm']) {
+for (const name of ['index.html', 'viewer.css', 'boot.js', 'viewer.js', 'worker.js', 'decoder.wasm', 'questions.wasm']) {
   const bytes = readFileSync(join(assets, name));
   const small = gzipSync(bytes, { level: 9 }).length;
   if (name !== 'questions.wasm') packed += small;
@@ -61,6 +62,48 @@ async function shownAfter(page, address) {
   await page.waitForFunction((names) => names.every((name) => performance.getEntriesByName(name).length !== 0), marks, { timeout: 120000 });
   return page.evaluate((names) => names.map((name) => performance.getEntriesByName(name)[0].startTime), marks);
 }
+
+/** The page over a slow line: 1 Mbit/s, 80 ms. */
+async function slowly(page) {
+  const line = await page.context().newCDPSession(page);
+  await line.send('Network.enable');
+  await line.send('Network.emulateNetworkConditions', { offline: false, latency: 80, downloadThroughput: 125000, uploadThroughput: 125000 });
+}
+
+/** Milliseconds from the address being asked for to the first picture, over a slow line. */
+async function firstSlowly(browser, address) {
+  const times = [];
+  for (let i = 0; i < repeats; ++i) {
+    const context = await browser.newContext({ viewport: { width: 1280, height: 800 } });
+    const page = await context.newPage();
+    await slowly(page);
+    await page.goto(address);
+    await page.waitForFunction((name) => performance.getEntriesByName(name).length !== 0, marks[0], { timeout: 120000 });
+    times.push(await page.evaluate((name) => performance.getEntriesByName(name)[0].startTime, marks[0]));
+    await context.close();
+  }
+  return times;
+}
+
+/** Milliseconds a picture while the camera goes round, and how many triangles there are. */
+async function flying(page) {
+  return page.evaluate(async () => {
+    const { view, relief } = window.ptinViewer;
+    const next = () => new Promise((resolve) => { requestAnimationFrame(resolve); });
+    const times = [];
+    for (let i = 0, before = 0; i < 90; ++i) {
+      view.turn(1);
+      const now = await next();
+      if (i > 30) times.push(now - before);
+      before = now;
+    }
+    times.sort((a, b) => a - b);
+    return { median: times[Math.floor(times.length / 2)], most: times[Math.floor(0.95 * times.length)], triangles: relief.drawn.corners.length / 3 };
+  });
+}
+
+const flown = ({ median, most, triangles }) =>
+  `flying over ${triangles} triangles: ${median.toFixed(1)} ms a picture, 95 % within ${most.toFixed(1)} ms`;
 
 /** Passes on what goes between a browser and a service, and keeps when how many bytes came from the service. */
 async function tapped(target) {
@@ -107,6 +150,8 @@ async function ofService(address) {
   const times = runs.map((run) => run.time);
   console.log(`${address}, Chromium ${browser.version()}: first picture after ${median(runs.map((run) => run.bytes))} bytes and ` +
     `${Math.round(median(times))} ms, the quickest of ${repeats} after ${Math.round(Math.min(...times))} ms`);
+  const slow = await firstSlowly(browser, `${address.origin}/viewer/index.html?collection=${encodeURIComponent(id)}`);
+  console.log(`  at 1 Mbit/s and 80 ms: first picture after ${Math.round(median(slow))} ms, the slowest of ${repeats} after ${Math.round(Math.max(...slow))} ms`);
   await browser.close();
   tap.close();
 }
@@ -144,6 +189,9 @@ async function inBrowser(stream, splits) {
   }
   console.log(`  Chromium ${browser.version()}: ${Math.round(rate)} splits/s; first picture after ` +
     `${Math.round(median(times.map((t) => t[0])))} ms, all ${splits} splits after ${Math.round(median(times.map((t) => t[1])))} ms`);
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  await shownAfter(page, `${server.url}?stream=dem.ptins`);
+  console.log(`  ${flown(await flying(page))}`);
   await browser.close();
   await server.close();
 }

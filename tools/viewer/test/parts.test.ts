@@ -5,7 +5,7 @@ import { certifiedAt, type CertifiedPart, certifiedWithin, HostedBytes, toldBy, 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { drawnMesh, surfaceEdges } from '../src/drawn_mesh';
+import { type DrawnMesh, drawnMesh, surfaceEdges, surfaceEnd } from '../src/drawn_mesh';
 import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
 import { FileView } from '../src/file_view';
@@ -15,8 +15,9 @@ import { csvOf } from '../src/plot';
 import { certaintyOf, costOf } from '../src/service';
 import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
+import { Ground } from '../src/triangle_grid';
 import { host } from '../../decoder/test/host.mjs';
-import { decoded, decoderModule, terrain } from '../../decoder/test/support';
+import { decoded, decoderModule, gridded, terrain } from '../../decoder/test/support';
 
 test('numbers', () => {
   assert.equal(number(0.0123456, 3), '0.0123');
@@ -200,15 +201,17 @@ test('refinement stops at a number of vertices', () => {
   assert.ok(still.decoder.mesh.vertexCount <= 20000);
 });
 
-test('what is drawn has upward normals, every edge once, and no void triangle', () => {
+test('what is drawn has upward normals, every edge of the surface once, its voids apart, and walls along its border', () => {
   const decoder = decoded(decoderModule(), readFileSync(terrain('coast_257', '--error', '5').stream));
   const { mesh, facts } = decoder;
   const told = toldBy(decoder.metadata);
   decoder.describe(told.ground);
   const drawn = drawnMesh(mesh, new Frame(facts, told.units, earthOf(decoder, told)));
   const surface = mesh.classes.reduce((n, c) => n + (c === 0 ? 1 : 0), 0);
-  assert.equal(drawn.corners.length, 3 * surface);
-  for (const v of drawn.corners) assert.ok(drawn.normals[4 * v + 2] > 0);
+  const corners = drawn.corners.subarray(0, surfaceEnd(drawn.parts));
+  assert.equal(corners.length, 3 * surface);
+  assert.equal(drawn.corners.length, 3 * mesh.triangleCount);
+  for (const v of corners) assert.ok(drawn.normals[4 * v + 2] > 0);
   const edges = surfaceEdges(mesh);
   const names = new Set<string>();
   for (let i = 0; i < edges.length; i += 2) {
@@ -217,11 +220,69 @@ test('what is drawn has upward normals, every edge once, and no void triangle', 
   }
   assert.equal(names.size, edges.length / 2);
   const all = new Set<string>();
-  for (let i = 0; i < drawn.corners.length; i += 3) {
+  for (let i = 0; i < corners.length; i += 3) {
     for (let k = 0; k < 3; ++k) {
-      const [a, b] = [drawn.corners[i + k], drawn.corners[i + (k + 1) % 3]].sort((p, q) => p - q);
+      const [a, b] = [corners[i + k], corners[i + (k + 1) % 3]].sort((p, q) => p - q);
       all.add(`${a} ${b}`);
     }
   }
   assert.deepEqual([...names].sort(), [...all].sort());
+  const border = mesh.triangles.reduce((n, word) => n + (word === 0xffffffff ? 1 : 0), 0);
+  assert.equal(drawn.walls.length, 16 * border);
+  for (let i = 0; i < drawn.positions.length; ++i) assert.ok(Number.isFinite(drawn.positions[i]));
+});
+
+test('rays and plumb lines meet the drawn ground at the same places', () => {
+  const drawn = drawnOf(terrain('mountains_257', '--error', '20').stream);
+  const ground = new Ground(drawn.positions, drawn.corners, drawn.grid);
+  const { west, south, east, north } = drawn.extent;
+  let met = 0;
+  for (let i = 0; i < 200; ++i) {
+    const x = west + (east - west) * ((i * 0.618) % 1), y = south + (north - south) * ((i * 0.3819 + 0.1) % 1);
+    const from: [number, number, number] = [x - 4000, y + 2500, 9000];
+    const z = ground.at(x, y);
+    assert.ok(z !== null);
+    const straight = ground.meets([x, y, 9000], [0, 0, -1]);
+    assert.ok(straight !== null && Math.abs(9000 - straight - z) < 0.01);
+    const share = ground.meets(from, [4000, -2500, z - 9000]);
+    assert.ok(share !== null && share <= 1 + 1e-5, 'at that place, or before it');
+    const [mx, my, mz] = [from[0] + share * 4000, from[1] - share * 2500, from[2] + share * (z - 9000)];
+    assert.ok(Math.abs((ground.at(mx, my) ?? Infinity) - mz) < 0.5);
+    if (share > 1 - 1e-5) ++met;
+  }
+  assert.ok(met > 100, `${met} are not hidden`);
+  assert.equal(ground.at(east + 1, south), null);
+  assert.equal(ground.meets([0, 0, 9000], [0, 0, 1]), null);
+});
+
+/** A flat grid of 40 by 40 samples on which `heights` says what is not flat. */
+function drawnGrid(name: string, heights: (row: number, column: number) => number): DrawnMesh {
+  const rows = Array.from({ length: 40 }, (_, r) => Array.from({ length: 40 }, (_, c) => heights(r, c).toFixed(1)));
+  return drawnOf(gridded(name, 'EPSG:32633', [400000, 5000000], 100, rows).stream);
+}
+
+function drawnOf(stream: string): DrawnMesh {
+  const decoder = decoded(decoderModule(), readFileSync(stream));
+  const told = toldBy(decoder.metadata);
+  decoder.describe(told.ground);
+  return drawnMesh(decoder.mesh, new Frame(decoder.facts, told.units, earthOf(decoder, told)));
+}
+
+test('colours go by the area of heights, whatever outliers there are', () => {
+  const rough = (r: number, c: number): number => 100 + 40 * Math.sin(r / 3) * Math.cos(c / 4) + (r * 7 + c * 3) % 5;
+  const plain = drawnGrid('plain', rough).spread!;
+  const spiked = drawnGrid('spiked', (r, c) => (r === 20 && c === 20 ? 9000 : rough(r, c))).spread!;
+  assert.ok(plain.high - plain.low > 50 && plain.high - plain.low < 90);
+  // A spike draws its neighbours along, a few of 1600 squares.
+  assert.ok(spiked.high - spiked.low < 1.3 * (plain.high - plain.low), `${spiked.high - spiked.low}`);
+});
+
+test('water is what is flat at 0, or flat, large and below its shores', () => {
+  const hills = (r: number, c: number): number => 30 + 8 * Math.sin(r / 2) * Math.sin(c / 2) + ((r * 5 + c * 11) % 7) / 2;
+  const waters = ({ parts }: DrawnMesh): number => (parts[parts.length - 2] - parts[parts.length - 3]) / 3;
+  const inside = (r: number, c: number): boolean => r > 10 && r < 25 && c > 12 && c < 30;
+  assert.equal(waters(drawnGrid('dry', hills)), 0);
+  assert.ok(waters(drawnGrid('sea', (r, c) => (c < 12 ? 0 : hills(r, c)))) > 0);
+  assert.ok(waters(drawnGrid('lake', (r, c) => (inside(r, c) ? 12 : hills(r, c)))) > 0);
+  assert.equal(waters(drawnGrid('plateau', (r, c) => (inside(r, c) ? 80 : hills(r, c)))), 0);
 });

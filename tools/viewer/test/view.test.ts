@@ -3,39 +3,54 @@
 // The camera over the terrain, without a picture.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { PerspectiveCamera } from 'three';
 import { Frame } from '../src/frame';
-import { View } from '../src/view';
+import { Camera, lengthOf, type Triple } from '../src/space';
+import { usualExaggeration, View } from '../src/view';
 
-/** A view of a hilly terrain of some kilometres; `rest` draws until it rests, and returns the number of pictures. */
-function viewed(): { view: View; rest: () => number } {
-  Object.assign(globalThis, { matchMedia: () => ({ matches: false }) });
-  const page = new EventTarget();
-  const canvas = Object.assign(new EventTarget(), { style: {}, ownerDocument: page, getRootNode: () => page });
-  const camera = new PerspectiveCamera(42, 1.5, 1, 1e6);
-  camera.up.set(0, 0, 1);
-  const view = new View(camera, canvas as unknown as HTMLCanvasElement);
+const relief = (x: number, y: number): number => 750 + 750 * Math.sin(x / 330) * Math.cos(y / 400);
+
+/** The first place of a way that is below the hills, in small steps. */
+function meets(from: Triple, way: Triple): number | null {
+  for (let share = 0; share < 30000; share += 5) {
+    const [x, y, z] = from.map((v, i) => v + share * way[i]);
+    if (Math.abs(x) > 3840 || Math.abs(y) > 3840) continue;
+    if (z <= relief(x, y)) return share;
+  }
+  return null;
+}
+
+function framed(minHeight = 300, maxHeight = 1800): Frame {
   const facts = {
     originX: 500000, originY: 5000000, stepX: 30, stepY: 30, heightIsFloat: 0, heightStep: 1, heightOffset: 0, minX: 0, minY: 0,
-    maxX: 256, maxY: 256, minHeight: 300, maxHeight: 1800, baseError: 0, baseDeviation: 0,
+    maxX: 256, maxY: 256, minHeight, maxHeight, baseError: 0, baseDeviation: 0,
   };
   const earth = {
     isDegrees: false, lengths: { unit: 'metre', metres: 1 }, metresPerHeight: 1, curvature: 0, lightSpeed: 1, size: null,
     scales: [{ y: 5000000, x: 1, perY: 1 }],
   };
-  view.setFrame(new Frame(facts, { horizontal: 'metre', height: 'metre' }, earth), 1100, 0);
-  const ground = (x: number, y: number): number => 750 + 750 * Math.sin(x / 330) * Math.cos(y / 400);
+  return new Frame(facts, { horizontal: 'metre', height: 'metre' }, earth);
+}
+
+/** A view of a hilly terrain of some kilometres; `rest` draws until it rests, and returns the number of pictures. */
+function viewed(): { view: View; rest: () => number } {
+  Object.assign(globalThis, { matchMedia: () => ({ matches: false }) });
+  const camera = new Camera();
+  Object.assign(camera, { width: 1100, height: 720 });
+  const view = new View(camera, { groundAt: relief, meets });
+  view.setFrame(framed());
   let hasChanged = false;
-  view.controls.addEventListener('change', () => { hasChanged = true; });
+  view.changed = () => { hasChanged = true; };
   const rest = (): number => {
     for (let pictures = 1; pictures < 100; ++pictures) {
       hasChanged = false;
-      if (!view.update(ground) && !hasChanged) return pictures;
+      if (!view.update() && !hasChanged) return pictures;
     }
     return Infinity;
   };
   return { view, rest };
 }
+
+const above = ({ camera: { position: [x, y, z] } }: View): number => z - relief(x, y);
 
 test('a view comes to rest wherever keys lead it, at its nearest and its farthest, too', () => {
   const { view, rest } = viewed();
@@ -51,4 +66,57 @@ test('a view comes to rest wherever keys lead it, at its nearest and its farthes
       }
     }
   }
+});
+
+test('the camera stays above the ground: wheel steps, tilts, rounds, and drags', () => {
+  const { view, rest } = viewed();
+  for (const at of [{ x: 0, y: 0 }, { x: 0.6, y: -0.7 }, { x: -0.5, y: 0.4 }]) {
+    view.reset();
+    for (let step = 0; step < 40; ++step) view.zoomAt(at, 0.7);
+    for (let step = 0; step < 20; ++step) {
+      view.tilt(5);
+      rest();
+      assert.ok(above(view) > 0, `step ${step}`);
+      view.orbit(view.pivotAt(at), 7, 5);
+      view.drag({ x: 0, y: 0 }, { x: 0.1, y: -0.2 }, view.levelAt(at));
+      view.settle();
+      rest();
+      assert.ok(above(view) > 0, `step ${step}, after a round`);
+      assert.ok(lengthOf(view.camera.position) < 1e6 && Number.isFinite(view.distance));
+    }
+  }
+});
+
+test('what is under the pointer stays there while it is dragged, and while the wheel turns', () => {
+  const { view } = viewed();
+  const at = { x: 0.3, y: -0.2 };
+  const seen = (place: Triple): { x: number; y: number } => view.camera.project(place)!;
+  const grabbed = view.pivotAt(at);
+  view.drag(at, { x: 0.1, y: -0.4 }, grabbed[2]);
+  assert.ok(Math.abs(seen(grabbed).x - 0.1) < 1e-6 && Math.abs(seen(grabbed).y + 0.4) < 1e-6);
+  view.zoomAt({ x: 0.1, y: -0.4 }, 0.5);
+  assert.ok(Math.abs(seen(grabbed).x - 0.1) < 0.01 && Math.abs(seen(grabbed).y + 0.4) < 0.01, 'nearer');
+  view.orbit(grabbed, 40, -10);
+  assert.ok(Math.abs(seen(grabbed).x - 0.1) < 1e-6, 'round it');
+});
+
+test('the scene is projected as the matrix has it', () => {
+  const { view } = viewed();
+  view.exaggeration = 3;
+  const at = view.project(700, -300, 900);
+  const m = view.camera.matrix;
+  const row = (i: number): number => m[i] * 700 + m[4 + i] * -300 + m[8 + i] * 2700 + m[12 + i];
+  assert.ok(Math.abs(at.x - (row(0) / row(3) + 1) / 2 * 1100) < 1e-6);
+  assert.ok(Math.abs(at.y - (1 - row(1) / row(3)) / 2 * 720) < 1e-6);
+  assert.equal(at.visible, true);
+  const { position, forward } = view.camera;
+  const [x, y, z] = position.map((v, i) => v - 100 * forward[i]);
+  assert.equal(view.project(x, y, z / 3).visible, false, 'behind the camera');
+});
+
+test('lowland is drawn higher than mountains', () => {
+  const spread = (relief: number) => ({ low: 0, high: relief, least: 0, most: relief });
+  const factors = [3000, 600, 60, 6].map((relief) => usualExaggeration(framed(0, relief), spread(relief)));
+  assert.deepEqual(factors, [...factors].sort((a, b) => a - b));
+  assert.ok(factors[0] === 1 && factors[3] > 4 && factors[3] <= 12, `${factors}`);
 });

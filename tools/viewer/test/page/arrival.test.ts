@@ -95,3 +95,30 @@ test('from a folder the page says that it needs a host', () => onPage(`file://${
   assert.match(await text(page, '#trouble'), /needs a web server[^]*http\.server/);
   assert.doesNotMatch(await text(page, '#subtitle'), /Loading/);
 }, { mayComplain: true }));
+
+test('a first picture lies in the page: it is there before the decoder is asked for', async () => {
+  let release: () => void = () => undefined;
+  const held = new Promise<void>((resolve) => { release = resolve; });
+  let asked = 0;
+  const server = await host(site, { answer: (_, response, path) => {
+    if (!path.endsWith('/decoder.wasm') || asked++ > 0) return false;
+    void held.then(() => {
+      response.writeHead(200, { 'Content-Type': 'application/wasm' }).end(readFileSync(join(site, 'decoder.wasm')));
+    });
+    return true;
+  } });
+  await onPage(server.url, async (page) => {
+    await until(page, () => performance.getEntriesByName('ptin-first-picture').length > 0);
+    await rested(page);
+    assert.ok(await counted(page, '#fact-vertices') < 5000);
+    assert.match(await text(page, '#certified'), /^\u00b1[\d.\u202f]+/, 'with its certificate');
+    assert.ok(await colours(page) > 200, 'the picture is not blank');
+    const before = await page.evaluate(() => window.ptinViewer.view.current);
+    release();
+    await complete(page);
+    assert.equal(await text(page, '#certified'), 'Exact');
+    const after = await page.evaluate(() => window.ptinViewer.view.current);
+    assert.ok(Math.abs(after.distance - before.distance) < 1e-6 * before.distance, 'the camera stays');
+  });
+  await server.close();
+});

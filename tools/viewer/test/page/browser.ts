@@ -6,8 +6,9 @@ import assert from 'node:assert/strict';
 import { cpSync, readFileSync } from 'node:fs';
 import { after, before } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
-import type { BufferGeometry, PerspectiveCamera } from 'three';
+import type { DrawnMesh } from '../../src/drawn_mesh';
 import type { Frame } from '../../src/frame';
+import type { Camera } from '../../src/space';
 import type { Pose } from '../../src/view';
 import { host, launched } from '../../../decoder/test/host.mjs';
 import { assets, file, ptin, terrain } from '../../../decoder/test/support';
@@ -19,10 +20,10 @@ declare global {
       frame: Frame;
       status: { certificate: Certificate };
       relief: {
-        pictures: number; camera: PerspectiveCamera; geometry: BufferGeometry;
+        pictures: number; camera: Camera; drawn: DrawnMesh;
         groundAt(x: number, y: number): number | null; pick(x: number, y: number): unknown;
       };
-      view: { current: Pose };
+      view: { current: Pose; exaggeration: number; project(x: number, y: number, z: number): { x: number; y: number; visible: boolean } };
     };
   }
 }
@@ -149,7 +150,8 @@ export async function colours(page: Page): Promise<number> {
   const clip = { x: width * 0.4, y: height * 0.4, width: width * 0.3, height: height * 0.25 };
   const png = (await page.screenshot({ clip })).toString('base64');
   return page.evaluate(async (data) => {
-    const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const bytes = Uint8Array.from(atob(data), (c) => c.charCodeAt(0));
+    const picture = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
     const canvas = new OffscreenCanvas(picture.width, picture.height);
     const context = canvas.getContext('2d')!;
     context.drawImage(picture, 0, 0);

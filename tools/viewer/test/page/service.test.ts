@@ -55,12 +55,12 @@ test('what is certified holds for all that is in sight, wherever the camera look
         await page.waitForTimeout(500);
         await complete(page);
         const drawn = await page.evaluate(() => {
-          const { frame, status, relief: { geometry, camera } } = window.ptinViewer;
+          const { frame, status, relief: { drawn, camera } } = window.ptinViewer;
           const { middleX, middleY, scaleX, scaleY, baseHeight, scaleZ } = frame;
           return {
             certified: status.certificate.error, frame: { middleX, middleY, scaleX, scaleY, baseHeight, scaleZ },
-            positions: Array.from(geometry.attributes.position.array), corners: Array.from(geometry.index!.array),
-            seen: camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).elements,
+            positions: Array.from(drawn.positions), corners: Array.from(drawn.corners.subarray(0, drawn.parts[drawn.parts.length - 2])),
+            seen: Array.from(camera.matrix), factor: window.ptinViewer.view.exaggeration,
           };
         });
         const { samples, worst } = worstInSight(drawn);
@@ -77,10 +77,11 @@ interface Drawn {
   positions: number[];
   corners: number[];
   seen: number[];
+  factor: number;
 }
 
 /** The largest error of the drawn mesh at the samples of made('degrees') that are in the picture, whatever hides them. */
-function worstInSight({ frame: f, positions: p, corners, seen: e }: Drawn): { samples: number; worst: number } {
+function worstInSight({ frame: f, positions: p, corners, seen: e, factor }: Drawn): { samples: number; worst: number } {
   const mapX = (v: number): number => f.middleX + p[3 * v] / f.scaleX, mapY = (v: number): number => f.middleY + p[3 * v + 1] / f.scaleY;
   const step = 0.04, west = 86.02, north = 25 + 121 * step - step / 2;
   const done = new Set<number>();
@@ -97,7 +98,7 @@ function worstInSight({ frame: f, positions: p, corners, seen: e }: Drawn): { sa
         if (u < -1e-3 || v < -1e-3 || u + v > 1.001 || done.has(1000 * r + q)) continue;
         done.add(1000 * r + q);
         const h = zs[0] + u * (zs[1] - zs[0]) + v * (zs[2] - zs[0]);
-        const x = (west + q * step - f.middleX) * f.scaleX, y = (north - r * step - f.middleY) * f.scaleY, z = (h - f.baseHeight) * f.scaleZ;
+        const x = (west + q * step - f.middleX) * f.scaleX, y = (north - r * step - f.middleY) * f.scaleY, z = factor * (h - f.baseHeight) * f.scaleZ;
         const w = e[3] * x + e[7] * y + e[11] * z + e[15];
         const across = (e[0] * x + e[4] * y + e[8] * z + e[12]) / w, up = (e[1] * x + e[5] * y + e[9] * z + e[13]) / w;
         if (w <= 0 || Math.abs(across) > 1 || Math.abs(up) > 1) continue;
