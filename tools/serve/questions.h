@@ -17,7 +17,8 @@ using Answer = http::Response(const Asked& asked);
 
 Answer answer_position, answer_trajectory, answer_area, answer_elevation, answer_mesh,
     answer_isolines, answer_highest, answer_viewshed, answer_profile, answer_sight, answer_stream,
-    answer_file, answer_tiles, answer_tileset, answer_subtree, answer_content;
+    answer_file, answer_tiles, answer_tileset, answer_subtree, answer_content, answer_dem,
+    answer_contours;
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
@@ -33,5 +34,7 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters mesh_parameters();
 [[nodiscard]] ask::Parameters stream_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
+[[nodiscard]] ask::Parameters dem_parameters();
+[[nodiscard]] ask::Parameters contours_parameters();
 
 }  // namespace ptin::serve

@@ -26,6 +26,7 @@ using http::Problem;
 using http::Request;
 using http::Response;
 
+constexpr std::string_view kTileJson = "tilejson.json";
 constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
 
 bool is_get(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
@@ -240,8 +241,10 @@ std::string TerrainService::key_of(const Request& request, const Match& found,
                                    const Collection* collection, const Question& question) const {
   std::string key = options_.version + "\n" + std::string(found.endpoint->path) + "\n";
   if (collection != nullptr) key += collection->fingerprint + collection->id;
-  return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
-         http::list_of(request, "accept");
+  key += "\n" + found.rest + "\n" + question.canonical() + "\n" + http::list_of(request, "accept");
+  if (found.rest != kTileJson) return key;
+  // It tells whole addresses.
+  return key + "\n" + http::list_of(request, "host") + (request.is_secure ? "\nhttps" : "");
 }
 
 std::shared_ptr<const Collection> TerrainService::collection_of(const Match& found) const {
