@@ -145,7 +145,7 @@ class Packages(unittest.TestCase):
 
 class Dependencies(unittest.TestCase):
     def test_are_those_of_what_is_used(self):
-        self.assertLessEqual({"libgdal32", "libproj25", "libcurl4", "libcairo2", "fonts-dejavu-core", "libc6"}, depends("ptin"))
+        self.assertLessEqual({"libgdal32", "libproj25", "libcurl4", "libcairo2", "libpng16-16", "libwebp7", "fonts-dejavu-core", "libc6"}, depends("ptin"))
         self.assertLessEqual({"libgdal32", "libc6"}, depends("ptin-gdal"))
         self.assertLessEqual({"libgdal32", "python3", "python3-numpy", "libc6"}, depends("python3-ptin"))
 

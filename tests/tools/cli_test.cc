@@ -34,7 +34,7 @@ TEST(Cli, HelpAndVersionAreNoErrors) {
   EXPECT_TRUE(run_ptin({"--version"}).out.starts_with("ptin "));
   for (const char* command :
        {"build", "info", "verify", "refine", "isoline", "locate", "profile", "sight", "stream",
-        "unstream", "viewer", "highest", "volume", "render", "bench", "completion"}) {
+        "unstream", "viewer", "tiles", "highest", "volume", "render", "bench", "completion"}) {
     const Outcome help = run_ptin({command, "--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos)

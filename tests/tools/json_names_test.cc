@@ -168,6 +168,7 @@ TEST_F_IN_RELEASE(JsonNames, AreThoseOfTheLists) {
   question({"stream", store, "-o", file("a.pts")});
   question({"unstream", file("a.pts"), "-o", file("b.ply")});
   ask({"viewer", "-o", file("site"), "--stream", file("a.pts")});
+  ask({"tiles", store, "-o", file("a.pmtiles"), "--zooms", "0", "4"});
   question({"isoline", store, "--interval", "20", "-o", file("a.geojson"), "-q"});
   question({"isoline", store, "--interval", "20", "--polygons", "-o", file("b.geojson"), "-q"});
   question(

@@ -44,8 +44,8 @@ TEST_P(EverySubcommand, SaysInAProcessOfItsOwnWhatItSaysHere) {
 INSTANTIATE_TEST_SUITE_P(Program, EverySubcommand,
                          ::testing::Values("build", "info", "refine", "export", "isoline", "locate",
                                            "profile", "highest", "volume", "sight", "viewshed",
-                                           "stream", "unstream", "viewer", "render", "verify",
-                                           "completion"));
+                                           "stream", "unstream", "viewer", "tiles", "render",
+                                           "verify", "completion"));
 
 }  // namespace
 }  // namespace ptin::tools

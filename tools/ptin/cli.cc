@@ -136,6 +136,17 @@ constexpr auto kCommands = std::to_array<Command>({
      "  ptin stream dem.ptin -o dem.ptins && ptin viewer -o site --stream dem.ptins\n"
      "  ptin viewer -o site && python3 -m http.server --directory site\n",
      declare_viewer, true},
+    {"tiles", "Write heights as tiles of a web map, in one file for any host",
+     "Terrain-RGB for MapLibre, deck.gl and their like: Web Mercator, XYZ, as `ptin serve` gives "
+     "them out at\n"
+     "/collections/NAME/dem. Heights are metres above the datum of the terrain's heights; each "
+     "zoom is as exact as its\n"
+     "pixels, the last one is the full TIN.\n\n"
+     "Examples:\n"
+     "  ptin tiles dem.ptin -o dem.pmtiles\n"
+     "  ptin tiles dem.ptin -o dem.pmtiles --encoding terrarium --format webp --size 512\n"
+     "  ptin tiles dem.ptin -o overview.pmtiles --zooms 0 9\n",
+     declare_tiles},
     {"highest", "Find the highest or lowest point of a window or a polygon",
      "Exact, of the full TIN. Reads little more than what lies around the answer.\n\n"
      "Examples:\n"

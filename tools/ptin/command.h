@@ -71,6 +71,7 @@ Declared declare_export(Context& context);
 Declared declare_stream(Context& context);
 Declared declare_unstream(Context& context);
 Declared declare_viewer(Context& context);
+Declared declare_tiles(Context& context);
 Declared declare_locate(Context& context);
 Declared declare_profile(Context& context);
 Declared declare_sight(Context& context);

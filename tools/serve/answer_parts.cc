@@ -125,6 +125,12 @@ http::Response text_response(std::string text, std::string_view media) {
   return response;
 }
 
+std::string address_of(const Asked& asked, std::string_view rest) {
+  return std::string(asked.request.is_secure ? "https://" : "http://") +
+         std::string(asked.request.header("host").value_or("")) + "/collections/" +
+         asked.collection->id + std::string(rest);
+}
+
 http::Response answered(const Asked& asked, std::string text, std::string_view media,
                         const QueryCost& cost, double certified_error, bool exact) {
   http::Response response = text_response(std::move(text), media);

@@ -42,6 +42,10 @@ constexpr std::array kSchemaMedia{ask::Format{"", "application/schema+json"}};
 constexpr std::array kTilesetMedia{ask::Format{"", kJson}};
 constexpr std::array kSubtreeMedia{ask::Format{"", "application/octet-stream"}};
 constexpr std::array kContentMedia{ask::Format{"", "model/gltf-binary"}};
+constexpr std::array kDemMedia{ask::Format{"", "image/png"}, ask::Format{"", "image/webp"},
+                               ask::Format{"", kJson}};
+constexpr std::array kContourMedia{ask::Format{"", "application/vnd.mapbox-vector-tile"},
+                                   ask::Format{"", kJson}};
 constexpr std::array kFileMedia{ask::Format{"", "application/vnd.ptin"}};
 constexpr std::array kElevationMedia{ask::Format{"", kJson}, ask::Format{"", kGeoJson}};
 
@@ -150,6 +154,12 @@ std::vector<Endpoint> made_table() {
        kSubtreeMedia, Lane::kTile, Reserves::kAll, answer_subtree},
       {"/collections/{id}/content/*", "content", false, "A tile of 3D Tiles", none, kContentMedia,
        Lane::kTile, Reserves::kAll, answer_content},
+      {"/collections/{id}/dem/*", "dem", false,
+       "tilejson.json, and z/x/y.png or .webp: heights as colours, as web maps ask (raster-dem)",
+       dem_parameters(), kDemMedia, Lane::kTile, Reserves::kAll, answer_dem},
+      {"/collections/{id}/contours/*", "contours", false,
+       "tilejson.json, and z/x/y.mvt or .pbf: contours as vector tiles, as web maps ask",
+       contours_parameters(), kContourMedia, Lane::kTile, Reserves::kAll, answer_contours},
       {"/collections/{id}/file", "file", false, "The file itself, whole or by a range", none,
        kFileMedia, Lane::kPoint, Reserves::kNothing, answer_file},
       {"/v1/*", "elevation", true,

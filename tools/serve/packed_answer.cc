@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t kLeastPacked = 1024;
 
 bool packs_well(std::string_view type) {
-  for (const std::string_view known :
-       {"json", "text/", "xml", "javascript", "wasm", "quantized-mesh", "gltf-binary", "ply"}) {
+  for (const std::string_view known : {"json", "text/", "xml", "javascript", "wasm",
+                                       "quantized-mesh", "vector-tile", "gltf-binary", "ply"}) {
     if (type.find(known) != std::string_view::npos) return true;
   }
   return false;

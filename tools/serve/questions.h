@@ -19,7 +19,7 @@ Answer answer_position, answer_trajectory, answer_area, answer_cube, answer_radi
     answer_elevation, answer_google_elevation, answer_lookup, answer_mesh, answer_isolines,
     answer_highest, answer_viewshed, answer_profile, answer_sight, answer_volume, answer_stream,
     answer_file, answer_raster, answer_schema, answer_tiles, answer_tileset, answer_subtree,
-    answer_content;
+    answer_content, answer_dem, answer_contours;
 /// As clients of Google's Elevation API and of opentopodata expect a refusal.
 void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
@@ -44,5 +44,7 @@ Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_col
 [[nodiscard]] ask::Parameters thumbnail_parameters();
 [[nodiscard]] ask::Parameters tiles_parameters();
 [[nodiscard]] ask::Parameters volume_parameters();
+[[nodiscard]] ask::Parameters dem_parameters();
+[[nodiscard]] ask::Parameters contours_parameters();
 
 }  // namespace ptin::serve

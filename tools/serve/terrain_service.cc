@@ -27,6 +27,7 @@ using http::Problem;
 using http::Request;
 using http::Response;
 
+constexpr std::string_view kTileJson = "tilejson.json";
 constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
 
 bool is_get(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }

@@ -11,11 +11,17 @@ namespace {
 /// So many triangles of a level are looked at whole: they fit the memory of a question.
 constexpr std::uint64_t kCoverageTriangles = 100'000;
 
+tools::TerrainTilesOptions tiles_options() {
+  tools::TerrainTilesOptions options;
+  options.coverage_triangles = kCoverageTriangles;
+  return options;
+}
+
 }  // namespace
 
-template <class Tiles>
-std::shared_ptr<const Tiles> TileSets::made(Kept<Tiles>& kept, const Terrain& terrain,
-                                            const CrsFacts& crs, const QueryLimits& limits) {
+template <class Tiles, class Make>
+std::shared_ptr<const Tiles> TileSets::kept_or_made(Kept<Tiles>& kept, const QueryLimits& limits,
+                                                    const Make& make) {
   {
     std::unique_lock lock(kept.mutex);
     kept.is_settled.wait(lock, limits.stop, [&] { return !kept.is_sought; });
@@ -31,9 +37,7 @@ std::shared_ptr<const Tiles> TileSets::made(Kept<Tiles>& kept, const Terrain& te
     kept.is_settled.notify_all();
   };
   try {
-    tools::TerrainTilesOptions options;
-    options.coverage_triangles = kCoverageTriangles;
-    tiles = std::make_shared<const Tiles>(terrain, crs, options, limits);
+    tiles = make();
   } catch (const Error& error) {
     settle();
     if (error.code() != ErrorCode::invalid_argument) throw;
@@ -49,13 +53,24 @@ std::shared_ptr<const Tiles> TileSets::made(Kept<Tiles>& kept, const Terrain& te
 std::shared_ptr<const tools::TerrainTiles> TileSets::quantized(const Terrain& terrain,
                                                                const CrsFacts& crs,
                                                                const QueryLimits& limits) {
-  return made(quantized_, terrain, crs, limits);
+  return kept_or_made(quantized_, limits, [&] {
+    return std::make_shared<const tools::TerrainTiles>(terrain, crs, tiles_options(), limits);
+  });
 }
 
 std::shared_ptr<const tools::TerrainTileset> TileSets::tileset(const Terrain& terrain,
                                                                const CrsFacts& crs,
                                                                const QueryLimits& limits) {
-  return made(tileset_, terrain, crs, limits);
+  return kept_or_made(tileset_, limits, [&] {
+    return std::make_shared<const tools::TerrainTileset>(terrain, crs, tiles_options(), limits);
+  });
+}
+
+std::shared_ptr<const tools::MercatorPyramid> TileSets::mercator(const Terrain& terrain,
+                                                                 const CrsFacts& crs,
+                                                                 const QueryLimits& limits) {
+  return kept_or_made(mercator_, limits,
+                      [&] { return std::make_shared<const tools::MercatorPyramid>(terrain, crs); });
 }
 
 }  // namespace ptin::serve

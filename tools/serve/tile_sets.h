@@ -9,6 +9,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
+#include "tools/tiles/mercator_pyramid.h"
 #include "tools/tiles/terrain_tiles.h"
 #include "tools/tiles/terrain_tileset.h"
 
@@ -29,6 +30,11 @@ class TileSets {
                                                                      const CrsFacts& crs,
                                                                      const QueryLimits& limits);
 
+  /// For web maps.  @throws as quantized()
+  [[nodiscard]] std::shared_ptr<const tools::MercatorPyramid> mercator(const Terrain& terrain,
+                                                                       const CrsFacts& crs,
+                                                                       const QueryLimits& limits);
+
  private:
   template <class Tiles>
   struct Kept {
@@ -37,11 +43,13 @@ class TileSets {
     bool is_sought = false;  ///< A question finds out at this moment.
     std::shared_ptr<const Tiles> tiles;
   };
-  template <class Tiles>
-  static std::shared_ptr<const Tiles> made(Kept<Tiles>& kept, const Terrain& terrain,
-                                           const CrsFacts& crs, const QueryLimits& limits);
+  /// @param make  Makes what is not kept yet, as a shared pointer.
+  template <class Tiles, class Make>
+  static std::shared_ptr<const Tiles> kept_or_made(Kept<Tiles>& kept, const QueryLimits& limits,
+                                                   const Make& make);
   Kept<tools::TerrainTiles> quantized_;
   Kept<tools::TerrainTileset> tileset_;
+  Kept<tools::MercatorPyramid> mercator_;
 };
 
 }  // namespace ptin::serve

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Tiles for viewers of the globe: quantized-mesh for Cesium, and 3D Tiles 1.1.
-#include <array>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +10,7 @@
 #include "tools/http/problem.h"
 #include "tools/serve/answer_parts.h"
 #include "tools/serve/questions.h"
+#include "tools/serve/tile_number.h"
 
 namespace ptin::serve {
 
@@ -20,26 +19,6 @@ namespace {
 using http::Problem;
 
 constexpr std::string_view kQuantizedMesh = "application/vnd.quantized-mesh";
-
-struct TileNumber {
-  std::int64_t level, x, y;
-};
-
-/// The numbers of "3/5/1.terrain".
-std::optional<TileNumber> number_of_tile(std::string_view path, std::string_view extension) {
-  if (!path.ends_with(extension)) return std::nullopt;
-  path.remove_suffix(extension.size());
-  std::array<std::int64_t, 3> numbers{};
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [end, status] = std::from_chars(path.data(), path.data() + path.size(), numbers[i]);
-    if (status != std::errc() || numbers[i] < 0) return std::nullopt;
-    path.remove_prefix(static_cast<std::size_t>(end - path.data()));
-    if (path.empty() != (i + 1 == numbers.size())) return std::nullopt;
-    if (!path.empty() && path.front() != '/') return std::nullopt;
-    if (!path.empty()) path.remove_prefix(1);
-  }
-  return TileNumber{numbers[0], numbers[1], numbers[2]};
-}
 
 [[noreturn]] void throw_no_tile() {
   throw Problem(404,
