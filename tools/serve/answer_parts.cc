@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/number.h"
+#include "tools/http/forwarded.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
 #include "tools/output/file_name.h"
@@ -126,9 +127,12 @@ http::Response text_response(std::string text, std::string_view media) {
 }
 
 std::string address_of(const Asked& asked, std::string_view rest) {
-  return std::string(asked.request.is_secure ? "https://" : "http://") +
-         std::string(asked.request.header("host").value_or("")) + "/collections/" +
-         asked.collection->id + std::string(rest);
+  const std::string path = "/collections/" + asked.collection->id + std::string(rest);
+  const std::string& base = asked.request.base;
+  const std::string_view host = asked.request.header("host").value_or("");
+  // A base with a host leads through the proxy; what is no host must not stand in an address.
+  if (base.find("://") != std::string::npos || !http::is_host(host)) return base + path;
+  return (asked.request.is_secure ? "https://" : "http://") + std::string(host) + base + path;
 }
 
 http::Response answered(const Asked& asked, std::string text, std::string_view media,

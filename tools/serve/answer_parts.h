@@ -73,8 +73,8 @@ constexpr std::uint64_t kAnswerBytesOfPlace = 1536;
     const Asked& asked, std::uint64_t answer_bytes = std::numeric_limits<std::uint64_t>::max());
 
 /// The whole address of something of the collection, as "/dem/": clients that read it elsewhere need the
-/// host, which is that of the request's header. Answers with such addresses are called tilejson.json,
-/// and kept by host (TerrainService::key_of()).
+/// host, which is the public one, or else that of the request's header. Answers with such addresses are
+/// called tilejson.json, and kept by host (TerrainService::key_of()).
 [[nodiscard]] std::string address_of(const Asked& asked, std::string_view rest);
 
 /// The answer with its headers: what it cost, as Server-Timing (time, pages, stars, records, bytes); how

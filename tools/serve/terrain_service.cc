@@ -247,8 +247,10 @@ std::string TerrainService::key_of(const Request& request, const Match& found,
   if (collection != nullptr) key += collection->fingerprint + collection->id;
   // A collection tells them.
   for (const LimitFact& limit : limit_table()) key += " " + std::to_string(limit.get(options_));
-  return key + "\n" + found.rest + "\n" + question.canonical() + "\n" +
-         http::list_of(request, "accept");
+  key += "\n" + found.rest + "\n" + question.canonical() + "\n" + http::list_of(request, "accept");
+  if (found.rest != kTileJson) return key;
+  // It tells whole addresses.
+  return key + "\n" + http::list_of(request, "host") + (request.is_secure ? "\nhttps" : "");
 }
 
 std::shared_ptr<const Collection> TerrainService::collection_of(const Match& found) const {

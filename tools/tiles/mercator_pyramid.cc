@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
+#include "engine/crs/credits.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/facts/source_count.h"
@@ -44,17 +43,6 @@ MapPoint sample_distance(const StoreFile& store) {
   const double rows = static_cast<double>(facts.bounds.max_y) - facts.bounds.min_y;
   const double distance = std::sqrt(columns * rows / std::max(1.0, vertices));
   return {distance * std::abs(facts.map.step_x), distance * std::abs(facts.map.step_y)};
-}
-
-std::string attribution_of(const StoreFile& store) {
-  constexpr std::size_t kMostBytes = 1000;
-  const nlohmann::json metadata = metadata_of(store);
-  const auto options = metadata.find("options");
-  if (options == metadata.end() || !options->is_object()) return {};
-  const auto found = options->find("attribution");
-  if (found == options->end() || !found->is_string()) return {};
-  auto text = found->get<std::string>();
-  return text.size() <= kMostBytes ? text : std::string();
 }
 
 /// Weights of four neighbours at equal steps for what lies a share t behind the second one: the cubic
@@ -180,7 +168,7 @@ MercatorPyramid::MercatorPyramid(const Terrain& terrain, const CrsFacts& crs)
     : terrain_(terrain),
       globe_(std::make_shared<const Globe>(terrain.store().facts(), crs)),
       box_(globe_->box()),
-      attribution_(attribution_of(terrain.store())) {
+      attribution_(credits_of(terrain.store()).attribution) {
   box_.south = std::max(box_.south, -kMostMercatorLatitude);
   box_.north = std::min(box_.north, kMostMercatorLatitude);
   if (box_.south >= box_.north) {
