@@ -1003,7 +1003,7 @@ class Documents(unittest.TestCase):
             pyplot = mock.MagicMock()
             pyplot.subplots.return_value = (mock.MagicMock(), mock.MagicMock())
             absent = {"matplotlib": mock.MagicMock(pyplot=pyplot), "matplotlib.pyplot": pyplot}
-        for name in ("tqdm", "tqdm.auto", "geopandas", "trimesh"):
+        for name in ("tqdm", "tqdm.auto", "geopandas", "shapely", "trimesh"):
             try:
                 importlib.import_module(name)
             except ImportError:

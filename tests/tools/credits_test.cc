@@ -130,7 +130,7 @@ TEST_F(CreditsOfAFile, AreServed) {
   EXPECT_EQ(extras.at("cesium").at("credits")[0].at("html"), layer.at("attribution"));
   EXPECT_FALSE(served.get("/collections/plain/tileset.json").json().at("asset").contains("extras"));
   const std::string page = served.get("/", "Accept: text/html\r\n").body;
-  EXPECT_NE(page.find(">Höhen &amp; &lt;Täler></a>"), std::string::npos) << page;
+  EXPECT_NE(page.find("<h2>Höhen &amp; &lt;Täler></h2>"), std::string::npos) << page;
   EXPECT_NE(page.find("© Landesamt &quot;Nord&quot;"), std::string::npos) << page;
 }
 

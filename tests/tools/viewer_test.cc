@@ -42,7 +42,7 @@ TEST_F(ViewerCli, WritesThePageAndTheStreamThatItOpens) {
   const std::string dem = stream("dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
-  EXPECT_EQ(answer.at("files").size(), 8U);
+  EXPECT_EQ(answer.at("files").size(), 9U);
   for (const json& written : answer.at("files")) {
     const std::string name = written.at("name");
     EXPECT_EQ(written.at("bytes"), fs::file_size(file("site/" + name))) << name;
@@ -78,7 +78,7 @@ TEST_F(ViewerCli, AStreamThatLiesInTheFolderStaysWhereItIs) {
   fs::create_directory(file("site"));
   const std::string dem = stream("site/dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
-  EXPECT_EQ(answer.at("files").size(), 7U);
+  EXPECT_EQ(answer.at("files").size(), 8U);
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
 }
 
@@ -115,7 +115,7 @@ TEST_F(ViewerCli, TheFirstPictureLiesInThePage) {
   EXPECT_EQ(first.at("facts").size(), 15U);
   EXPECT_GT(first.at("vertices"), 300);
   EXPECT_GE(first.at("error"), 20.0) << "of a coarser mesh than the stream's last";
-  EXPECT_NO_THROW(static_cast<void>(json::parse(first.at("metadata").get<std::string>())));
+  EXPECT_TRUE(json::accept(first.at("metadata").get<std::string>()));
   // A stream that is damaged from its beginning has a page all the same, which will tell it.
   std::string bytes = read_file(dem);
   bytes[300] = static_cast<char>(bytes[300] ^ 1);

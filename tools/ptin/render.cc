@@ -125,9 +125,12 @@ std::optional<double> tolerance_for(const StoreFile& store, const Window& window
   return round != tolerances.end() ? *round : *least;
 }
 
+MapPoint middle_of(const Window& window) {
+  return {(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2};
+}
+
 View view_of(const Window& window, const CrsFacts& crs, int width, int height) {
-  const MapPoint middle{(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2};
-  return make_view(window, ground_of(crs).per_map_unit(middle), width, height);
+  return make_view(window, ground_of(crs).per_map_unit(middle_of(window)), width, height);
 }
 
 /// The words of the foot: the CRS, what heights are above, the source.
@@ -151,8 +154,7 @@ std::string detail_text(const RefineRequest& request, const CrsFacts& crs) {
          (unit.empty() ? "" : " " + unit);
 }
 
-SheetText text_of(const RenderOptions& options, const Window& window, const StoreFile& store,
-                  const CrsFacts& crs) {
+SheetText text_of(const RenderOptions& options, const StoreFile& store, const CrsFacts& crs) {
   const Credits credits = credits_of(store);
   SheetText text;
   text.title = credits.title.empty() ? std::filesystem::path(options.terrain.file).stem().string()
@@ -161,8 +163,6 @@ SheetText text_of(const RenderOptions& options, const Window& window, const Stor
   text.length_unit = unit_of_ground(crs);
   text.height_unit = crs.vertical_unit;
   text.is_in_degrees = crs.geographic;
-  text.north =
-      north_at({(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2}, crs);
   return text;
 }
 
@@ -361,10 +361,12 @@ int run_render(const RenderOptions& options, const Context& context) {
   const std::optional<Region> region =
       region_of(options.region, store.facts(), crs, context).region;
   const Window window = region ? std::get<Window>(*region) : whole_window(store.facts());
-  Picture picture = picture_of(options, window, crs, text_of(options, window, store, crs));
+  Picture picture = picture_of(options, window, crs, text_of(options, store, crs));
   RefineRequest request = request_of(options, region.has_value(), picture, store);
   request.limits.stop = context.stop;
   picture.text.detail = detail_text(request, crs);
+  // PROJ is asked where there is a sheet to draw on alone: it takes longer than a small picture.
+  if (picture.around) picture.text.north = north_at(middle_of(window), crs);
   const Shown shown = ask_for(options, request, picture, terrain, crs);
   Canvas canvas(options.out.output, options.out.overwrite, picture.width(), picture.height(),
                 picture.dots);

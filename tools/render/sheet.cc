@@ -101,7 +101,7 @@ class FrameTicks {
   static constexpr double kApart = 14;
 
   /// So many ticks that their texts have room.
-  [[nodiscard]] static int most(int pixels) { return std::max(3, pixels / 110); }
+  [[nodiscard]] static int most(int pixels) { return std::max(4, pixels / 80); }
   void mark(CanvasPoint from, CanvasPoint to) const { canvas_.line(from, to, {}); }
   [[nodiscard]] std::string label_of(double tick, double step, bool is_up) const {
     return text_.is_in_degrees ? degrees_text(tick, step, is_up) : tick_text(tick, step);
@@ -228,7 +228,11 @@ void draw_title(Canvas& canvas, const CanvasBox& map, const SheetText& text) {
   const TextStyle style{.anchor = TextAnchor::kEnd, .size = 12, .colour = kFaintInk};
   const double room = map.right - map.left - canvas.text_width(text.detail, style) - 20;
   canvas.clip({map.left, 0, map.left + std::max(room, 0.0), map.top});
-  canvas.text({map.left, y}, text.title, {.size = 16, .is_bold = true});
+  // A long title becomes smaller before it is cut.
+  constexpr double kLargest = 16, kSmallest = 11;
+  const double width = canvas.text_width(text.title, {.size = kLargest, .is_bold = true});
+  const double size = std::clamp(kLargest * room / std::max(width, 1.0), kSmallest, kLargest);
+  canvas.text({map.left, y}, text.title, {.size = size, .is_bold = true});
   canvas.unclip();
   canvas.text({map.right, y}, text.detail, style);
 }

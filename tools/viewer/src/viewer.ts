@@ -53,6 +53,10 @@ class Viewer {
   private attribution = '';
   /** With which the page was opened. */
   private readonly linkPose = fromHash(location.hash).pose;
+  /** What the link asks, until it is asked: the address soon tells of the page as it is. */
+  private linkAsked = askedInHash(location.hash);
+  /** The Worker has opened the terrain. */
+  private isOpen = false;
   /** The first sight is chosen. */
   private isSighted = false;
 
@@ -189,6 +193,8 @@ class Viewer {
       this.poseOfLink();
     }
     this.moved();
+    this.isOpen = true;
+    this.followLink();
   }
 
   private poseOfLink(): void {
@@ -204,8 +210,15 @@ class Viewer {
     this.view.fillWith(extent, spread.low + 0.3 * (spread.high - spread.low));
     this.poseOfLink();
     this.moved();
-    const asked = askedInHash(location.hash);
-    if (asked !== null) this.inquiry.follow(asked);
+    this.followLink();
+  }
+
+  /** Asks what the link asks, once the terrain can answer and the camera stands. */
+  private followLink(): void {
+    const { linkAsked } = this;
+    if (linkAsked === null || !this.isSighted || !this.isOpen) return;
+    this.linkAsked = null;
+    this.inquiry.follow(linkAsked);
   }
 
   private show(status: Status): void {
