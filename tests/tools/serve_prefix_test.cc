@@ -58,7 +58,8 @@ struct Proxy {
 /// The address that a relative one means within a document.
 std::string resolved(const std::string& document, const std::string& address) {
   if (address.starts_with("http") || address.starts_with("/")) return address;
-  return document.substr(0, document.rfind('/') + 1) + address;
+  const std::string path = document.substr(0, document.find('?'));
+  return path.substr(0, path.rfind('/') + 1) + address;
 }
 
 /// All texts under these names within a document.
@@ -115,7 +116,9 @@ std::size_t walk(ServedTerrains& served, const Proxy& proxy) {
   std::set<std::string> seen;
   const auto in_service = [&](const std::string& address) {
     const std::string& before = address.starts_with("http") ? proxy.root : proxy.prefix;
-    return address.substr(before.size(), address.find("&service=") - before.size());
+    const std::string path =
+        address.substr(before.size(), address.find("&service=") - before.size());
+    return path.empty() ? "/" : path;
   };
   std::vector<std::string> open = {proxy.prefix + "/", proxy.prefix + "/?f=html",
                                    proxy.prefix + "/collections/hills/tiles/layer.json",

@@ -3,6 +3,7 @@
 // One question of the service: where it is asked, what it takes, and what answers it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -58,6 +59,9 @@ struct Endpoint {
   /// collection of GeoJSON; and the properties of features.
   std::vector<ask::Field> members{}, properties{};
 };
+
+/// Paths of one segment beside the questions, which are answered at once (TerrainService::is_quick()).
+inline constexpr std::array<std::string_view, 3> kQuickPaths = {"healthz", "readyz", "metrics"};
 
 /// Every question, in the order of the documentation.
 [[nodiscard]] std::span<const Endpoint> endpoints() noexcept;

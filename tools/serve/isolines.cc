@@ -38,8 +38,8 @@ std::vector<double> levels_of(const Asked& asked, const ask::Levels& levels) {
 }
 
 /// The lines as features.
-std::string text_of(const Asked& asked, const Isolines& lines, const Places& places,
-                    const Json& more) {
+std::string isolines_text(const Asked& asked, const Isolines& lines, const Places& places,
+                          const Json& more) {
   std::vector<MapPoint> points, client;
   Isoline line;
   const auto add_geometry = [&](LongText& text, std::size_t i) {
@@ -76,14 +76,14 @@ http::Response answer_isolines(const Asked& asked) {
         {"type", "FeatureCollection"},
         {"features", Json::array()},
         {"ptin:certainty", certainty_json(asked, base.error, base.deviation, is_exact)}};
-    return answered(asked, serve::text_of(none), format.media, {}, base.error, is_exact);
+    return answered(asked, text_of(none), format.media, {}, base.error, is_exact);
   }
   const Isolines lines = asked.terrain().isolines(request);
   check_count(lines.points(), asked.options.question.vertices, "points of lines", "vertices",
               "bbox");
-  return answered(asked,
-                  text_of(asked, lines, places, {{"ptin:certainty", certainty_of(asked, lines)}}),
-                  format.media, lines);
+  return answered(
+      asked, isolines_text(asked, lines, places, {{"ptin:certainty", certainty_of(asked, lines)}}),
+      format.media, lines);
 }
 
 }  // namespace ptin::serve

@@ -2,7 +2,6 @@
 #include "tools/serve/public_address.h"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <vector>
 
@@ -29,8 +28,9 @@ std::vector<std::string_view> segments_of(std::string_view prefix) {
 bool is_taken(std::string_view prefix) {
   const std::vector<std::string_view> segments = segments_of(prefix);
   if (segments.empty()) return false;
-  constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
-  if (std::find(kQuick.begin(), kQuick.end(), segments[0]) != kQuick.end()) return true;
+  if (std::find(kQuickPaths.begin(), kQuickPaths.end(), segments[0]) != kQuickPaths.end()) {
+    return true;
+  }
   return std::any_of(endpoints().begin(), endpoints().end(), [&](const Endpoint& endpoint) {
     const std::vector<std::string_view> own = segments_of(endpoint.path);
     return !own.empty() && own[0] == segments[0];

@@ -28,7 +28,6 @@ using http::Request;
 using http::Response;
 
 constexpr std::string_view kTileJson = "tilejson.json";
-constexpr std::array<std::string_view, 3> kQuick = {"healthz", "readyz", "metrics"};
 
 bool is_get(const Request& request) { return request.method == "GET" || request.method == "HEAD"; }
 
@@ -149,7 +148,7 @@ void TerrainService::enter(Request& request) const { enter_by(options_.public_ad
 bool TerrainService::is_quick(const Request& request) const {
   if (request.method == "OPTIONS" || access_.is_login(request)) return true;
   return request.path.size() == 1 &&
-         std::find(kQuick.begin(), kQuick.end(), request.path[0]) != kQuick.end();
+         std::find(kQuickPaths.begin(), kQuickPaths.end(), request.path[0]) != kQuickPaths.end();
 }
 
 Response TerrainService::answer_quickly(const Request& request) {
