@@ -20,14 +20,14 @@ constexpr TextStyle kLabelStyle{
     .anchor = TextAnchor::kMiddle, .size = 10.5, .halo = 1.6, .colour = {84, 50, 24}};
 
 /// Cairo's numbers end at some millions, so points far beside the map stay at this distance.
-constexpr double kFarthest = 1e5;  // pixels
+constexpr double kFarthestPixel = 1e5;  // pixels
 
 std::vector<CanvasPoint> on_canvas(const Isoline& line, const View& view) {
   std::vector<CanvasPoint> points;
   points.reserve(line.points.size());
   for (const MapPoint& p : line.points) {
-    points.push_back({std::clamp(view.pixel_x(p.x), -kFarthest, kFarthest),
-                      std::clamp(view.pixel_y(p.y), -kFarthest, kFarthest)});
+    points.push_back({std::clamp(view.pixel_x(p.x), -kFarthestPixel, kFarthestPixel),
+                      std::clamp(view.pixel_y(p.y), -kFarthestPixel, kFarthestPixel)});
   }
   return points;
 }

@@ -17,9 +17,9 @@ namespace ptin::tools {
 
 namespace {
 
-constexpr std::size_t kHeaderBytes = 127;
+constexpr std::size_t kPmtilesHeaderBytes = 127;
 /// Header and root directory are read by one request (section 2).
-constexpr std::size_t kMostRootBytes = 16384 - kHeaderBytes;
+constexpr std::size_t kMostRootBytes = 16384 - kPmtilesHeaderBytes;
 /// Entries of a leaf directory at first; more where the root does not hold so many leaves.
 constexpr std::size_t kLeafEntries = 4096;
 
@@ -127,13 +127,13 @@ PmtilesCounts PmtilesWriter::publish(const PmtilesFacts& facts, const nlohmann::
   const std::string told = http::gzip(metadata.dump());
   counts_.entries = entries_.size();
   counts_.leaves = made.leaf_count;
-  const std::uint64_t metadata_at = kHeaderBytes + made.root.size();
+  const std::uint64_t metadata_at = kPmtilesHeaderBytes + made.root.size();
   const std::uint64_t leaves_at = metadata_at + told.size();
   const std::uint64_t tiles_at = leaves_at + made.leaves.size();
   counts_.bytes = tiles_at + tile_bytes_;
   std::string header = "PMTiles\x03";
   for (const std::uint64_t number :
-       {std::uint64_t{kHeaderBytes}, std::uint64_t{made.root.size()}, metadata_at,
+       {std::uint64_t{kPmtilesHeaderBytes}, std::uint64_t{made.root.size()}, metadata_at,
         std::uint64_t{told.size()}, leaves_at, std::uint64_t{made.leaves.size()}, tiles_at,
         tile_bytes_, counts_.tiles, counts_.entries, counts_.contents}) {
     add_value(header, number);
