@@ -147,11 +147,21 @@ std::string foot_of(const std::string& attribution, const CrsFacts& crs) {
 }
 
 /// The words on how exact the picture is.
-std::string detail_text(const RefineRequest& request, const CrsFacts& crs) {
-  if (!request.detail.tolerance) return "full TIN";
+/// @param tolerance  That was asked for, if any. It is told where it holds: it is the rounder number. A file
+///                   that keeps less detail certifies more.
+std::string detail_text(const ask::AnswerFacts& facts, const std::optional<double>& tolerance,
+                        const CrsFacts& crs) {
+  if (facts.exact) return "full TIN";
+  double within = facts.certified_error;
+  if (tolerance && within <= *tolerance) {
+    within = *tolerance;
+  } else if (within > 0) {
+    // A bound is rounded upwards, to the third digit.
+    const double digit = std::pow(10.0, std::floor(std::log10(within)) - 2);
+    within = std::ceil(within / digit) * digit;
+  }
   const std::string unit = short_unit(crs.vertical_unit);
-  return "every sample within " + short_number(*request.detail.tolerance) +
-         (unit.empty() ? "" : " " + unit);
+  return "every sample within " + short_number(within) + (unit.empty() ? "" : " " + unit);
 }
 
 SheetText text_of(const RenderOptions& options, const StoreFile& store, const CrsFacts& crs) {
@@ -232,30 +242,6 @@ struct Shown {
   std::stop_token stop;
 };
 
-/// Heights and states under the middles of the pixels, exactly as questions for points would have them.
-RasterResult sample(const Terrain& terrain, const RefineRequest& request, const View& pixels,
-                    TerrainRaster& raster) {
-  raster = empty_raster(pixels);
-  RasterRequest wanted;
-  wanted.lattice = lattice_of(pixels);
-  wanted.pixels = {0, 0, pixels.width, pixels.height};
-  wanted.detail = request.detail;
-  wanted.states = true;
-  wanted.limits = request.limits;
-  return terrain.raster(wanted, [&](const RasterBlock& block) {
-    for (std::int64_t y = 0; y < block.pixels.height; ++y) {
-      for (std::int64_t x = 0; x < block.pixels.width; ++x) {
-        const std::size_t from =
-            static_cast<std::size_t>(y) * block.stride + static_cast<std::size_t>(x);
-        const std::size_t to = raster.place(static_cast<int>(block.pixels.column + x),
-                                            static_cast<int>(block.pixels.row + y));
-        raster.heights[to] = static_cast<float>(block.heights[from]);
-        raster.states[to] = block.states[from];
-      }
-    }
-  });
-}
-
 /// Asks for all that the picture shows.
 Shown ask_for(const RenderOptions& options, const RefineRequest& request, const Picture& picture,
               const Terrain& terrain, const CrsFacts& crs) {
@@ -274,7 +260,8 @@ Shown ask_for(const RenderOptions& options, const RefineRequest& request, const 
   if (options.pages) {
     shown.raster = rasterize(*shown.mesh, terrain.store().facts(), pixels, request.limits.stop);
   } else {
-    const RasterResult result = sample(terrain, request, pixels, shown.raster);
+    const RasterResult result =
+        sample_terrain(terrain, request.detail, request.limits, pixels, shown.raster);
     if (!shown.mesh) take(result);
   }
   shown.contours = contours_of(options, request, terrain);
@@ -364,10 +351,10 @@ int run_render(const RenderOptions& options, const Context& context) {
   Picture picture = picture_of(options, window, crs, text_of(options, store, crs));
   RefineRequest request = request_of(options, region.has_value(), picture, store);
   request.limits.stop = context.stop;
-  picture.text.detail = detail_text(request, crs);
   // PROJ is asked where there is a sheet to draw on alone: it takes longer than a small picture.
   if (picture.around) picture.text.north = north_at(middle_of(window), crs);
   const Shown shown = ask_for(options, request, picture, terrain, crs);
+  picture.text.detail = detail_text(shown.facts, request.detail.tolerance, crs);
   Canvas canvas(options.out.output, options.out.overwrite, picture.width(), picture.height(),
                 picture.dots);
   const ReliefStyle style = draw(canvas, options, shown, picture, store.facts());

@@ -17,6 +17,29 @@ TerrainRaster empty_raster(const View& view) {
   return raster;
 }
 
+RasterResult sample_terrain(const Terrain& terrain, const DetailRequest& detail,
+                            const QueryLimits& limits, const View& view, TerrainRaster& raster) {
+  raster = empty_raster(view);
+  RasterRequest wanted;
+  wanted.lattice = lattice_of(view);
+  wanted.pixels = {0, 0, view.width, view.height};
+  wanted.detail = detail;
+  wanted.states = true;
+  wanted.limits = limits;
+  return terrain.raster(wanted, [&](const RasterBlock& block) {
+    const PixelRect& pixels = block.pixels;
+    for (std::int64_t y = 0; y < pixels.height; ++y) {
+      for (std::int64_t x = 0; x < pixels.width; ++x) {
+        const auto from = static_cast<std::size_t>(y) * block.stride + static_cast<std::size_t>(x);
+        const std::size_t to =
+            raster.place(static_cast<int>(pixels.column + x), static_cast<int>(pixels.row + y));
+        raster.heights[to] = static_cast<float>(block.heights[from]);
+        raster.states[to] = block.states[from];
+      }
+    }
+  });
+}
+
 PixelLattice lattice_of(const View& view) {
   return {{view.window.min_x + (0.5 - view.left) / view.scale_x,
            view.window.max_y - (0.5 - view.top) / view.scale_y},

@@ -38,6 +38,13 @@ struct TerrainRaster {
 [[nodiscard]] TerrainRaster rasterize(const RefinedTin& refined, const StoreFacts& facts,
                                       const View& view, const std::stop_token& stop = {});
 
+/// Heights and states under the middle of each pixel of `view`, as questions for points would have them,
+/// without a mesh.
+/// @param raster  Filled.
+/// @throws Error as Terrain::raster()
+RasterResult sample_terrain(const Terrain& terrain, const DetailRequest& detail,
+                            const QueryLimits& limits, const View& view, TerrainRaster& raster);
+
 /// Memory of a TerrainRaster, for each pixel.
 [[nodiscard]] constexpr std::uint64_t raster_bytes_per_pixel(bool has_pages) {
   return sizeof(float) + sizeof(PointState) + (has_pages ? sizeof(std::uint32_t) : 0);

@@ -52,22 +52,27 @@ std::uint64_t picture_bytes(const tools::View& view) {
                    2 * sizeof(std::uint32_t));
 }
 
-/// A vertex for four pixels: more would hardly be seen, and cost as much again.
+/// What the picture shows: the full TIN where the file holds a raster's heights, which cost less than a
+/// level and have no triangles across the sea; else a vertex for four pixels, since more would hardly be
+/// seen, and cost as much again.
 /// @throws Error resource_exhausted  the picture alone takes more than the question's memory
-RefinedTin tin_for(const Asked& asked, const tools::View& view) {
+RasterResult sampled(const Asked& asked, const tools::View& view, tools::TerrainRaster& raster) {
   const std::uint64_t taken = picture_bytes(view);
   if (taken >= asked.limits.memory_bytes) {
     throw Error(ErrorCode::resource_exhausted, "the picture takes more than its memory");
   }
-  const std::uint64_t pixels =
-      static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
-  const std::uint64_t least = asked.terrain().store().t0().vertices.size();
-  RefineRequest request;
-  request.detail.vertices =
-      std::max(least, std::min<std::uint64_t>(pixels / 4, asked.options.question.vertices));
-  request.limits = asked.limits;
-  request.limits.memory_bytes -= taken;
-  return asked.terrain().refine(request);
+  DetailRequest detail;
+  if (asked.terrain().store().floor() == nullptr) {
+    const std::uint64_t pixels =
+        static_cast<std::uint64_t>(view.width) * static_cast<std::uint64_t>(view.height);
+    const std::uint64_t least = asked.terrain().store().t0().vertices.size();
+    detail.vertices =
+        std::max(least, std::min<std::uint64_t>(pixels / 4, asked.options.question.vertices));
+  }
+  QueryLimits limits = asked.limits;
+  limits.memory_bytes -= taken;
+  return tools::sample_terrain(asked.terrain(), detail, limits,
+                               tools::supersampled(view, kSamplesOfPixel), raster);
 }
 
 /// Pixels with an opacity: the share of a pixel's samples that lie on the terrain.
@@ -96,15 +101,14 @@ ask::Parameters thumbnail_parameters() { return described<ThumbnailQuestion>(); 
 
 http::Response answer_thumbnail(const Asked& asked) {
   const tools::View view = view_of(*asked.collection, read<ThumbnailQuestion>(asked));
-  const RefinedTin refined = tin_for(asked, view);
+  tools::TerrainRaster raster;
+  const RasterResult found = sampled(asked, view, raster);
   const auto& stop = asked.limits.stop;
-  const tools::TerrainRaster raster =
-      tools::rasterize(refined, asked.facts(), tools::supersampled(view, kSamplesOfPixel), stop);
   const int reach = tools::pixels_between_samples(asked.facts().map, view) * kSamplesOfPixel;
   const tools::ReliefStyle style = tools::choose_style(raster, view, false, reach);
   const tools::Image image = tools::draw_relief(raster, view, kSamplesOfPixel, style, stop);
   return answered(asked, tools::png_of(image.width, image.height, with_opacity(image, raster)),
-                  asked.formats.front().media, refined);
+                  asked.formats.front().media, found);
 }
 
 }  // namespace ptin::serve
