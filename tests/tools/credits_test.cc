@@ -123,6 +123,11 @@ TEST_F(CreditsOfAFile, AreServed) {
   const json layer = served.get("/collections/named/tiles/layer.json").json();
   EXPECT_EQ(layer.at("name"), kTitle);
   EXPECT_EQ(layer.at("attribution"), "© Landesamt &quot;Nord&quot;");
+  for (const char* what : {"dem", "contours"}) {
+    const json tiles =
+        served.get(std::string("/collections/named/") + what + "/tilejson.json").json();
+    EXPECT_EQ(tiles.at("attribution"), "© Landesamt &quot;Nord&quot;") << what;
+  }
   EXPECT_EQ(served.get("/collections/plain/tiles/layer.json").json().at("name"), "plain");
   const json extras = served.get("/collections/named/tileset.json").json().at("asset").at("extras");
   EXPECT_EQ(extras.at("title"), kTitle);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -228,6 +229,35 @@ TEST(Pmtiles, HoldTheTilesOfTheService) {
   const auto metadata = nlohmann::json::parse(read_file(folder.file("tiles/metadata.json")));
   EXPECT_EQ(metadata.at("encoding"), "terrarium");
   EXPECT_NE(run_ptin({"tiles", store, "-o", folder.file("coast.mbtiles")}).status, 0);
+}
+
+TEST(Pmtiles, TellOfATerrainAcrossTheAntimeridianThatItGoesAround) {
+  const TestFolder folder;
+  RasterRecipe recipe;
+  recipe.value = hills;
+  recipe.epsg = 4326;
+  recipe.pixel = 1.0 / 16;
+  recipe.west = 179 - 1.0 / 32;
+  recipe.north = 10.5;
+  make_raster(folder.file("a.tif"), recipe);
+  build_terrain(folder.file("a.tif"), folder.file("a.ptin"));
+  const Webbed web(folder.file("a.ptin"));
+  const nlohmann::json facts = height_facts(web.pyramid, {});
+  EXPECT_EQ(facts.at("bounds")[0], -180.0);
+  EXPECT_EQ(facts.at("bounds")[2], 180.0);
+  EXPECT_NEAR(facts.at("center")[0].get<double>(), 180.0, 1e-6);
+  EXPECT_LE(facts.at("center")[2], facts.at("maxzoom"));
+  ASSERT_EQ(run_ptin({"tiles", folder.file("a.ptin"), "-o", folder.file("a.pmtiles")}).status, 0);
+  const std::string file = read_file(folder.file("a.pmtiles"));
+  const auto number_at = [&](std::size_t at) {
+    std::int32_t number = 0;
+    std::memcpy(&number, file.data() + at, sizeof number);
+    return number;
+  };
+  // Of the header: west, east, and the longitude of the middle.
+  EXPECT_EQ(number_at(102), -1800000000);
+  EXPECT_EQ(number_at(110), 1800000000);
+  EXPECT_NEAR(number_at(119), 1800000000, 10);
 }
 
 TEST(Pmtiles, DivideTheDirectoryAndKeepEqualTilesOnce) {

@@ -66,7 +66,8 @@ TEST_F(ServeWebTiles, AreThereWhereTheTerrainIs) {
 TEST_F(ServeWebTiles, RefuseWhatMeansNothing) {
   for (const std::string query :
        {"dem/0/0/0.png?encoding=grey", "dem/0/0/0.png?size=128", "dem/0/0/0.png?voids=maybe",
-        "contours/0/0/0.mvt?interval=0", "contours/0/0/0.mvt?interval=0.0001"}) {
+        "contours/0/0/0.mvt?interval=0", "contours/0/0/0.mvt?interval=0.0001",
+        "contours/tilejson.json?interval=0.0001"}) {
     const HttpAnswer answer = get(in("mountains", query));
     EXPECT_EQ(answer.status, 400) << query;
     EXPECT_TRUE(answer.json().contains("parameter")) << answer.body;

@@ -166,6 +166,7 @@ PmtilesCounts write_tiles(const TilesOptions& options, const MercatorPyramid& py
   nlohmann::json metadata = metadata_of_tiles(pyramid, style, datum);
   metadata["minzoom"] = zooms.first;
   metadata["maxzoom"] = zooms.last;
+  metadata["center"][2] = (zooms.first + zooms.last) / 2;
   return writer.publish(facts, metadata);
 }
 

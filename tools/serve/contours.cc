@@ -44,12 +44,11 @@ http::Response contours_tilejson(const Asked& asked, const tools::MercatorPyrami
   return json_response(json);
 }
 
-/// A refusal of the interval names it.
-std::optional<tools::Tile> tile_of(const Asked& asked, const tools::MercatorPyramid& pyramid,
-                                   const TileNumber& number, std::optional<double> interval) {
+/// What make() gives; a refusal of the interval names it.
+template <typename Make>
+auto with_interval(const Make& make) {
   try {
-    return tools::contour_tile(pyramid, {static_cast<int>(number.level), number.x, number.y},
-                               interval, asked.limits);
+    return make();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::invalid_argument) throw;
     throw http::Problem(400, error.message()).at("interval");
@@ -64,11 +63,16 @@ http::Response answer_contours(const Asked& asked) {
   const auto question = read<ContoursQuestion>(asked);
   const std::shared_ptr<const tools::MercatorPyramid> pyramid =
       asked.collection->tile_sets.mercator(asked.terrain(), asked.collection->crs, asked.limits);
-  if (asked.rest == "tilejson.json") return contours_tilejson(asked, *pyramid, question.interval);
+  if (asked.rest == "tilejson.json") {
+    return with_interval([&] { return contours_tilejson(asked, *pyramid, question.interval); });
+  }
   const std::optional<TileNumber> number =
       number_of_tile(asked.rest, asked.rest.ends_with(".pbf") ? ".pbf" : ".mvt");
   if (number && number->level <= last_contour_zoom(*pyramid)) {
-    std::optional<tools::Tile> tile = tile_of(asked, *pyramid, *number, question.interval);
+    std::optional<tools::Tile> tile = with_interval([&] {
+      return tools::contour_tile(*pyramid, {static_cast<int>(number->level), number->x, number->y},
+                                 question.interval, asked.limits);
+    });
     if (tile) {
       return answered(asked, std::move(tile->bytes), "application/vnd.mapbox-vector-tile",
                       tile->cost, tile->error, false);

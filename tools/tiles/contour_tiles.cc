@@ -355,7 +355,7 @@ std::optional<Tile> contour_tile(const MercatorPyramid& pyramid, const WebTile& 
 }
 
 nlohmann::json contour_facts(const MercatorPyramid& pyramid, std::optional<double> interval) {
-  const GlobeBox box = pyramid.bounds();
+  if (interval) static_cast<void>(level_numbers(pyramid.globe(), *interval));
   nlohmann::json intervals = nlohmann::json::array(), errors = nlohmann::json::array();
   for (int z = 0; z <= last_contour_zoom(pyramid); ++z) {
     intervals.push_back(interval.value_or(contour_interval(z)));
@@ -367,13 +367,10 @@ nlohmann::json contour_facts(const MercatorPyramid& pyramid, std::optional<doubl
          {"description", "Contours, higher ground to their right"},
          {"fields",
           {{"ele", "Number: height in metres"}, {"index", "Boolean: every fifth level"}}}}}},
-      {"minzoom", 0},
-      {"maxzoom", last_contour_zoom(pyramid)},
-      {"bounds", {box.west, box.south, box.east, box.north}},
       {"ptin:unit", "m"},
       {"ptin:intervals", std::move(intervals)},
       {"ptin:errors", std::move(errors)}};
-  if (!pyramid.attribution().empty()) facts["attribution"] = pyramid.attribution();
+  facts.update(pyramid.place_facts(last_contour_zoom(pyramid)));
   return facts;
 }
 

@@ -39,6 +39,7 @@ namespace ptin::tools {
                                                const QueryLimits& limits);
 
 /// What TileJSON tells of the tiles: vector_layers, zooms, bounds, the interval of each zoom.
+/// @throws Error invalid_argument  as contour_tile()
 [[nodiscard]] nlohmann::json contour_facts(const MercatorPyramid& pyramid,
                                            std::optional<double> interval);
 

@@ -290,4 +290,14 @@ GridBox Globe::grid_box(const GlobeBox& asked) const {
           clamped(std::ceil(max_y), all.min_y, all.max_y)};
 }
 
+GlobeBox unwrapped(const GlobeBox& box) noexcept {
+  return box.west > box.east ? GlobeBox{-180.0, box.south, 180.0, box.north} : box;
+}
+
+MapPoint middle_of(const GlobeBox& box) noexcept {
+  const double east = box.east < box.west ? box.east + 360.0 : box.east;
+  const double middle = 0.5 * (box.west + east);
+  return {middle > 180.0 ? middle - 360.0 : middle, 0.5 * (box.south + box.north)};
+}
+
 }  // namespace ptin::tools

@@ -33,6 +33,11 @@ struct GlobeBox {
   double north = 0.0;
 };
 
+/// The same box for formats that know none across the antimeridian: that one goes around the Earth.
+[[nodiscard]] GlobeBox unwrapped(const GlobeBox& box) noexcept;
+/// Its middle, longitude from -180 to 180 and latitude, where west is above east across the antimeridian.
+[[nodiscard]] MapPoint middle_of(const GlobeBox& box) noexcept;
+
 /// How a store's grid is laid on the globe.
 struct GlobeOptions {
   /// Heights are turned into ellipsoidal ones by PROJ. Else they are taken as they are, in metres.

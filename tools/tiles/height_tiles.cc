@@ -117,7 +117,6 @@ std::optional<Tile> height_tile(const MercatorPyramid& pyramid, const HeightTile
 }
 
 nlohmann::json height_facts(const MercatorPyramid& pyramid, const HeightTileStyle& style) {
-  const GlobeBox box = pyramid.bounds();
   nlohmann::json errors = nlohmann::json::array();
   for (int z = 0; z <= last_zoom(pyramid, style); ++z) {
     errors.push_back(pyramid.level(z + style.beyond_zoom()).error + step_of(style.code) / 2);
@@ -126,12 +125,9 @@ nlohmann::json height_facts(const MercatorPyramid& pyramid, const HeightTileStyl
                           {"tile_size", style.side},
                           {"format", name_of(style.format)},
                           {"voids", style.fills_voids ? "fill" : "transparent"},
-                          {"minzoom", 0},
-                          {"maxzoom", last_zoom(pyramid, style)},
-                          {"bounds", {box.west, box.south, box.east, box.north}},
                           {"ptin:unit", "m"},
                           {"ptin:errors", std::move(errors)}};
-  if (!pyramid.attribution().empty()) facts["attribution"] = pyramid.attribution();
+  facts.update(pyramid.place_facts(last_zoom(pyramid, style)));
   return facts;
 }
 

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/crs/credits.h"
 #include "engine/crs/ground.h"
 #include "engine/error.h"
 #include "tools/facts/source_count.h"
+#include "tools/formats/markup_text.h"
 
 namespace ptin::tools {
 
@@ -220,6 +223,17 @@ GlobeBox MercatorPyramid::bounds() const noexcept {
   const double east = longitude_within_circle(box_.east);
   return {longitude_within_circle(box_.west), box_.south, east == -180.0 ? 180.0 : east,
           box_.north};
+}
+
+nlohmann::json MercatorPyramid::place_facts(int last_zoom) const {
+  const GlobeBox box = bounds(), flat = unwrapped(box);
+  const MapPoint middle = middle_of(box);
+  nlohmann::json facts = {{"minzoom", 0},
+                          {"maxzoom", last_zoom},
+                          {"bounds", {flat.west, flat.south, flat.east, flat.north}},
+                          {"center", {middle.x, middle.y, last_zoom / 2}}};
+  if (!attribution_.empty()) facts["attribution"] = markup_text(attribution_);
+  return facts;
 }
 
 std::int64_t MercatorPyramid::unrolled_column(const WebTile& tile) const noexcept {

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "engine/crs/crs_facts.h"
 #include "engine/query/questions.h"
 #include "tools/tiles/globe.h"
@@ -49,6 +51,11 @@ class MercatorPyramid {
   /// Where the terrain lies, degrees, within the latitudes of web maps; west is above east across the
   /// antimeridian.
   [[nodiscard]] GlobeBox bounds() const noexcept;
+  /// What TileJSON and PMTiles both tell of the tiles: `bounds`, which must not lie across the antimeridian
+  /// and go around the Earth where the terrain does, `center` (longitude, latitude, zoom), zooms, and
+  /// `attribution` as HTML, which clients take it for.
+  /// @param last_zoom  From 0 on.
+  [[nodiscard]] nlohmann::json place_facts(int last_zoom) const;
   /// The terrain's metadata name who is to be named where it is shown; empty: nobody.
   [[nodiscard]] const std::string& attribution() const noexcept { return attribution_; }
 

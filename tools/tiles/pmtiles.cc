@@ -37,13 +37,6 @@ std::int32_t ten_millionths(double degrees) {
   return static_cast<std::int32_t>(std::lround(degrees * 1e7));
 }
 
-/// The middle of the bounds, across the antimeridian where they are.
-double middle_longitude(const GlobeBox& b) {
-  const double east = b.east < b.west ? b.east + 360.0 : b.east;
-  const double middle = 0.5 * (b.west + east);
-  return middle > 180.0 ? middle - 360.0 : middle;
-}
-
 }  // namespace
 
 std::uint64_t pmtiles_id(const WebTile& tile) noexcept {
@@ -144,13 +137,14 @@ PmtilesCounts PmtilesWriter::publish(const PmtilesFacts& facts, const nlohmann::
         static_cast<std::uint8_t>(facts.min_zoom), static_cast<std::uint8_t>(facts.max_zoom)}) {
     add_value(header, number);
   }
-  const GlobeBox& b = facts.bounds;
+  const GlobeBox b = unwrapped(facts.bounds);
   for (const double degrees : {b.west, b.south, b.east, b.north}) {
     add_value(header, ten_millionths(degrees));
   }
   add_value(header, static_cast<std::uint8_t>((facts.min_zoom + facts.max_zoom) / 2));
-  add_value(header, ten_millionths(middle_longitude(b)));
-  add_value(header, ten_millionths(0.5 * (b.south + b.north)));
+  const MapPoint middle = middle_of(facts.bounds);
+  add_value(header, ten_millionths(middle.x));
+  add_value(header, ten_millionths(middle.y));
   out_.write(header);
   out_.write(made.root);
   out_.write(told);

@@ -30,7 +30,8 @@ enum class PmtilesType : std::uint8_t { kMvt = 1, kPng = 2, kWebp = 4 };
 struct PmtilesFacts {
   PmtilesType type = PmtilesType::kPng;
   int min_zoom = 0, max_zoom = 0;
-  GlobeBox bounds;
+  GlobeBox
+      bounds;  ///< West is above east across the antimeridian: the header goes around the Earth then.
 };
 
 struct PmtilesCounts {
