@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// `west` ends at 180 degrees, `mercator` in the plane of EPSG:3857 next to where x jumps, and `globe`
+/// `north` reaches around the Earth from 2.5 to 87.5 degrees, `west` ends at 180 degrees, `mercator` in the plane of EPSG:3857 next to where x jumps, and `globe`
 /// goes around the Earth from -177.5 to 177.5.
 class ServeAntimeridian : public ::testing::Test {
  protected:
@@ -50,6 +50,9 @@ class ServeAntimeridian : public ::testing::Test {
     recipe.west = -180;
     recipe.north = 82.5;
     add("globe", recipe);
+    recipe.height = 18;
+    recipe.north = 90;
+    add("north", recipe);
     served_ = std::make_unique<ServedTerrains>(options);
   }
   static void TearDownTestSuite() {
@@ -166,6 +169,33 @@ TEST_F(ServeAntimeridian, LaysGridsOverPolygonsTheShorterWay) {
                             .json();
   for (const json& state : of_globe["ranges"]["state"]["values"]) {
     EXPECT_TRUE(state == 0 || state == 2 || state == 3);
+  }
+}
+
+TEST_F(ServeAntimeridian, LaysGridsAroundAPole) {
+  const json told =
+      get("north/radius?within=500&within-units=km&resolution-x=73&resolution-y=5&coords=" +
+          encoded("POINT(0 89)"))
+          .json();
+  const json &x = told["domain"]["axes"]["x"], &y = told["domain"]["axes"]["y"];
+  EXPECT_EQ(x["start"], -180.0);
+  EXPECT_EQ(x["stop"], 180.0);
+  EXPECT_EQ(y["stop"], 90.0);
+  const json& states = told["ranges"]["state"]["values"];
+  const double south = y["start"];
+  for (int row = 0; row < 5; ++row) {
+    const double lat = south + (90 - south) * row / 4;
+    for (int column = 0; column < 73; column += 9) {
+      // On a sphere, away from where the ellipsoid decides.
+      constexpr double kRadian = M_PI / 180;
+      const double cosine = std::sin(89 * kRadian) * std::sin(lat * kRadian) +
+                            std::cos(89 * kRadian) * std::cos(lat * kRadian) *
+                                std::cos((-180 + 5 * column) * kRadian);
+      const double km = 6371 * std::acos(std::min(1.0, cosine));
+      if (std::abs(km - 500) < 10) continue;
+      EXPECT_EQ(states[static_cast<std::size_t>(row * 73 + column)] == 3, km > 500)
+          << lat << " " << column << " " << km;
+    }
   }
 }
 

@@ -95,6 +95,12 @@ TEST_F(ServeLookup, SaysWhatIsWrong) {
     EXPECT_EQ(refused.status, 400) << query;
     EXPECT_FALSE(refused.json().at("error").get<std::string>().empty()) << refused.body;
   }
+  // What came as JSON is no encoded polyline, though its text may be one.
+  for (const json& locations :
+       {json::array(), json{json::array()}, json{json::object()}, json(1)}) {
+    const HttpAnswer refused = served_->post("/api/v1/lookup", {{"locations", locations}});
+    EXPECT_EQ(refused.status, 400) << locations << refused.body;
+  }
   serve::ServeOptions options;
   options.http = unhurried_limits();
   options.files = {{"lost", folder_->file("lost.ptin")}};

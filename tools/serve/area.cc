@@ -339,6 +339,16 @@ Window widened(const Asked& asked, Window w, double metres) {
       std::min(metres_at(asked, {w.min_x, w.min_y}).x, metres_at(asked, {w.min_x, w.max_y}).x);
   w.min_x -= metres / across;
   w.max_x += metres / across;
+  if (!asked.collection->crs.geographic) return w;
+  // Around a pole lie all longitudes.
+  const bool holds_pole = w.min_y <= -90 || w.max_y >= 90;
+  if (holds_pole || !(w.max_x - w.min_x < 360)) {
+    const double middle = (w.min_x + w.max_x) / 2;
+    w.min_x = middle - 180;
+    w.max_x = middle + 180;
+  }
+  w.min_y = std::max(w.min_y, -90.0);
+  w.max_y = std::min(w.max_y, 90.0);
   return w;
 }
 
@@ -354,7 +364,17 @@ Window box_for_client(const Places& places, const Window& there) {
   return *box;
 }
 
-/// What lies within metres of lines in the terrain's CRS; a position is a line of one corner.
+/// The place of a side nearest to a position, in the plane that has the lengths of that position.
+MapPoint nearest_of(const MapPoint& a, const MapPoint& b, const MapPoint& p, const MapPoint& unit) {
+  const double bx = (b.x - a.x) * unit.x, by = (b.y - a.y) * unit.y;
+  const double px = (p.x - a.x) * unit.x, py = (p.y - a.y) * unit.y;
+  const double length = bx * bx + by * by;
+  const double share = length > 0 ? std::clamp((px * bx + py * by) / length, 0.0, 1.0) : 0.0;
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+}
+
+/// What lies within metres of lines in the terrain's CRS, over ground, which in degrees is along the
+/// ellipsoid; a position is a line of one corner.
 Shape around(const Asked& asked, const Places& places, std::vector<std::vector<MapPoint>> lines,
              double metres) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -366,20 +386,22 @@ Shape around(const Asked& asked, const Places& places, std::vector<std::vector<M
     }
   }
   Shape shape{box_for_client(places, widened(asked, box, metres)), {}};
-  shape.holds = [&asked, &places, metres, lines = std::move(lines)](MapPoint client) {
+  shape.holds = [&asked, &places, metres, ground = ground_of(asked.collection->crs),
+                 lines = std::move(lines)](MapPoint client) {
     const MapPoint p = places.to_terrain(client);
     const MapPoint unit = metres_at(asked, p);
+    MapPoint nearest{};
+    double least = kFar;
     for (const auto& line : lines) {
       for (std::size_t i = 0; i < line.size(); ++i) {
-        const MapPoint &a = line[i], &b = line[i + 1 < line.size() ? i + 1 : i];
-        const double bx = (b.x - a.x) * unit.x, by = (b.y - a.y) * unit.y;
-        const double px = (p.x - a.x) * unit.x, py = (p.y - a.y) * unit.y;
-        const double length = bx * bx + by * by;
-        const double share = length > 0 ? std::clamp((px * bx + py * by) / length, 0.0, 1.0) : 0.0;
-        if (std::hypot(px - share * bx, py - share * by) <= metres) return true;
+        const MapPoint c = nearest_of(line[i], line[i + 1 < line.size() ? i + 1 : i], p, unit);
+        const double away = std::hypot((p.x - c.x) * unit.x, (p.y - c.y) * unit.y);
+        if (away < least) nearest = c;
+        least = std::min(least, away);
       }
     }
-    return false;
+    if (!ground.geographic) return least <= metres;
+    return ground.distance(p, nearest) * ground.metres_per_height <= metres;
   };
   return shape;
 }

@@ -138,13 +138,17 @@ std::vector<MapPoint> places_of(std::string_view text) {
   return places;
 }
 
-/// The positions of a parameter: text, or an array of JSON. An encoded polyline has no comma, and may
-/// begin as an array does.
+/// The positions of a parameter: an array of JSON, or text. A text without a comma is an encoded polyline,
+/// which may begin as an array does; what came as JSON never is one.
 std::vector<MapPoint> given_places(const Question& question, const char* name) {
   const std::string& text = question.text(name);
-  if (!text.starts_with('[') || text.find(',') == std::string::npos) return places_of(text);
+  const bool is_text = !text.starts_with('[') || text.find(',') == std::string::npos;
+  if (is_text && !question.is_json(name)) return places_of(text);
   std::vector<MapPoint> places;
   const nlohmann::json array = question.json(name);
+  if (!array.is_array()) {
+    throw Problem(400, "expected an array of positions, as [[34.34, -118.3]]").at(name);
+  }
   for (const nlohmann::json& place : array) places.push_back(place_of(place));
   return places;
 }

@@ -107,6 +107,11 @@ const std::string& Question::text(std::string_view name) const {
   return value == nullptr ? kNothing : value->text;
 }
 
+bool Question::is_json(std::string_view name) const {
+  const Value* const value = find(name);
+  return value != nullptr && !value->json.is_discarded();
+}
+
 nlohmann::json Question::json(std::string_view name) const {
   const Value* const value = find(name);
   if (value == nullptr) return {};

@@ -33,6 +33,8 @@ class Question {
   [[nodiscard]] bool has(std::string_view name) const;
   /// The text; empty where it was not given.
   [[nodiscard]] const std::string& text(std::string_view name) const;
+  /// Whether it came as JSON that is no text.
+  [[nodiscard]] bool is_json(std::string_view name) const;
   /// A value of JSON; null where it was not given.
   [[nodiscard]] nlohmann::json json(std::string_view name) const;
   /// Puts the values where the rows say.  @throws http::Problem 400  as ask::Reading
