@@ -133,7 +133,10 @@ std::size_t walk(ServedTerrains& served, const Proxy& proxy) {
     std::vector<std::string> found;
     if (type.find("json") != std::string::npos) collect(answer.json(), found);
     if (type.find("html") != std::string::npos) found = addresses_in_html(answer.body);
-    for (const std::string& one : found) {
+    for (std::string one : found) {
+      // A TileJSON has whole addresses, by the header Host where no proxy tells of itself.
+      const bool is_whole = address.ends_with("tilejson.json") && one.starts_with("http");
+      if (is_whole && !proxy.root.starts_with("http")) one.erase(0, one.find('/', 8));
       if (one.starts_with("http://www.opengis.net") || one.starts_with("https://www.gnu.org")) {
         continue;
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Windows as GeoTIFF and COG over HTTP.
+#include <array>
 #include <memory>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <ogr_spatialref.h>
 
 #include "tests/tools/raster_reader.h"
 #include "tests/tools/serve_fixture.h"
@@ -60,7 +62,7 @@ TEST_F(Serve, GivesTheSourceBitForBitAsGeoTiff) {
 TEST_F(Serve, GivesAWindowAtALevelWithItsCertificate) {
   const Window w = middle_of_bounds(*mountains_, 0.3);
   const std::string target =
-      in("mountains", "coverage?crs=native&error=20&pixel-size=70,90&bbox=") + window_text(w);
+      in("mountains", "coverage?bbox-crs=native&error=20&pixel-size=70,90&bbox=") + window_text(w);
   const HttpAnswer answer = get(target);
   EXPECT_EQ(answer.header("content-type"), "image/tiff; application=geotiff");
   const Received made(answer);
@@ -86,6 +88,70 @@ TEST_F(Serve, GivesAWindowAtALevelWithItsCertificate) {
   expect_nothing_left();
 }
 
+TEST_F(Serve, GivesARasterInAnotherCrs) {
+  const std::string window = window_text(middle_of_bounds(*mountains_, 0.3));
+  for (const std::string crs : {"EPSG:3857", "CRS84"}) {
+    const HttpAnswer answer =
+        get(in("mountains", "coverage?error=20&bbox-crs=native&crs=") + crs + "&bbox=" + window);
+    const Received made(answer);
+    const ReadRaster raster = read_raster(made.path());
+    EXPECT_TRUE(answer.header("content-crs").ends_with(crs == "CRS84" ? "/CRS84>" : "/3857>"));
+    EXPECT_EQ(made.item("PTIN_CERTIFIED_ERROR"), answer.header("ptin-certified-error"));
+    OGRSpatialReference there, own;
+    own.importFromEPSG(32611);
+    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    there.importFromEPSG(crs == "CRS84" ? 4326 : 3857);
+    there.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    EXPECT_TRUE(made.dataset->GetSpatialRef()->IsSame(&there));
+    const std::unique_ptr<OGRCoordinateTransformation> way(
+        OGRCreateCoordinateTransformation(&there, &own));
+    LocateRequest request;
+    request.detail.tolerance = 20.0;
+    ASSERT_GT(raster.width, 20);
+    std::size_t surface = 0;
+    for (std::size_t i = 0; i < raster.values.size(); i += raster.values.size() / 50) {
+      const auto width = static_cast<std::size_t>(raster.width);
+      MapPoint p{
+          raster.transform[0] + (static_cast<double>(i % width) + 0.5) * raster.transform[1],
+          raster.transform[3] + (static_cast<double>(i / width) + 0.5) * raster.transform[5]};
+      ASSERT_TRUE(way->Transform(1, &p.x, &p.y));
+      const LocatedPoint found = mountains_->locate(std::vector{p}, request).points[0];
+      if (found.state != PointState::kSurface) continue;
+      ++surface;
+      EXPECT_NEAR(raster.values[i], found.height, 1e-3) << crs << " " << i;
+    }
+    EXPECT_GT(surface, 40U);
+  }
+  expect_nothing_left();
+}
+
+TEST_F(Serve, TakesTheWindowAndThePixelsOfARasterAsOgcWritesThem) {
+  const auto body_of = [](const std::string& query) {
+    const HttpAnswer answer = get(in("mountains", "coverage?error=20") + query);
+    EXPECT_EQ(answer.status, 200) << query << answer.body.substr(0, 300);
+    return answer.body;
+  };
+  const std::string box = "-118.31,34.34,-118.3,34.35";
+  EXPECT_EQ(body_of("&subset=Lat(34.34:34.35),Lon(-118.31:-118.3)"), body_of("&bbox=" + box));
+  EXPECT_EQ(body_of("&subset=e(*:*)&subset-crs=native"), body_of(""));
+  // Of a window beyond the terrain there is what they have in common.
+  EXPECT_EQ(body_of("&bbox=-180,-90,180,90"), body_of(""));
+  for (const std::string crs : {"native", "EPSG:3857"}) {
+    const HttpAnswer answer =
+        get(in("mountains", "coverage?error=20&width=30&height=20&crs=" + crs + "&bbox=" + box));
+    const Received made(answer);
+    EXPECT_EQ(made.dataset->GetRasterXSize(), 30);
+    EXPECT_EQ(made.dataset->GetRasterYSize(), 20);
+    EXPECT_EQ(answer.body, get(in("mountains", "coverage?error=20&scale-size=Lon(30),Lat(20)&crs=" +
+                                                   crs + "&bbox=" + box))
+                               .body);
+  }
+  const Received narrow(get(in("mountains", "coverage?crs=EPSG:3857&width=30&bbox=" + box)));
+  std::array<double, 6> transform{};
+  narrow.dataset->GetGeoTransform(transform.data());
+  EXPECT_NEAR(transform[1], -transform[5], transform[1] * 0.02);
+}
+
 TEST_F(Serve, SaysWhichRasterItDoesNotGive) {
   const auto refused = [](const std::string& query, int status, const std::string& parameter) {
     const HttpAnswer answer = get(in("mountains", "coverage?") + query);
@@ -98,7 +164,16 @@ TEST_F(Serve, SaysWhichRasterItDoesNotGive) {
   refused("pixel-size=1e9", 400, "pixel-size");
   refused("f=png", 400, "f");
   refused("bbox=1,2,3,4", 400, "bbox");
+  refused("bbox=34.3,-118.3,34.4,-118.2", 400, "bbox");
   refused("vertices=1", 400, "vertices");
+  refused("subset=Time(1:2)", 400, "subset");
+  refused("subset=Lat(34.3)", 400, "subset");
+  refused("subset=Lat(34.3:34.4),Lat(34.3:34.4)", 400, "subset");
+  refused("scale-size=Lat(0)", 400, "scale-size");
+  refused("width=0", 400, "width");
+  refused("width=10&pixel-size=60", 400, "width");
+  refused("crs=EPSG:99999", 400, "crs");
+  EXPECT_EQ(refused("width=100000&height=100000", 413, "pixel-size"), "pixels");
   EXPECT_EQ(refused("pixel-size=0.1", 413, "pixel-size"), "pixels");
   expect_nothing_left();
 }

@@ -193,6 +193,12 @@ void check_detail(const Asked& asked, const DetailRequest& detail) {
 std::optional<Window> window_on_terrain(const Asked& asked, const Places& places,
                                         const std::optional<Window>& bbox) {
   if (!bbox) return std::nullopt;
+  if (places.is_geographic() && (bbox->min_y > 90 || bbox->max_y < -90)) {
+    throw http::Problem(400,
+                        "latitudes are from -90 to 90; a window is west, south, east, north, with "
+                        "longitudes first, whatever the order of the CRS's axes is")
+        .at("bbox");
+  }
   const Window window = places.to_terrain(*bbox);
   const StoreFacts& facts = asked.facts();
   if (GridRegion(window, facts.map).meets(facts.bounds)) return window;

@@ -12,6 +12,7 @@
 #include "tools/serve/limit_table.h"
 #include "tools/serve/places.h"
 #include "tools/serve/questions.h"
+#include "tools/tiles/web_mercator.h"
 
 namespace ptin::serve {
 
@@ -52,6 +53,13 @@ Json terrain_json(const Collection& c) {
           {"bytes", c.terrain.store().file_bytes()}};
 }
 
+/// Whether there are tiles of web maps beyond doubt: a terrain that reaches to a pole may have none.
+bool has_web_tiles(const Collection& c) {
+  if (!c.lon_lat || c.lon_lat->min_y <= -90 || c.lon_lat->max_y >= 90) return false;
+  return c.lon_lat->min_y < tools::kMostMercatorLatitude &&
+         c.lon_lat->max_y > -tools::kMostMercatorLatitude;
+}
+
 Json collection_json(const Collection& c, const std::string& root) {
   const std::string base = root + "/collections/" + c.id, crs = uri_of(c.crs);
   Json json = {
@@ -64,6 +72,12 @@ Json collection_json(const Collection& c, const std::string& root) {
              "application/schema+json", "the values of the coverage"),
         link(base + "/stream", "item", "application/vnd.ptin.stream", "progressive transmission"),
         link(base + "/thumbnail.png", "preview", "image/png", "a small picture")}}};
+  if (has_web_tiles(c)) {
+    json["links"].push_back(
+        link(base + "/dem/tilejson.json", "item", kJson, "heights as colours, as TileJSON"));
+    json["links"].push_back(
+        link(base + "/contours/tilejson.json", "item", kJson, "contours as TileJSON"));
+  }
   add_credits(json, c.credits);
   const Window w = c.lon_lat.value_or(c.bounds);
   json["extent"]["spatial"] = {{"bbox", {{w.min_x, w.min_y, w.max_x, w.max_y}}},
