@@ -42,19 +42,19 @@ constexpr std::uint16_t kUndefined = 0, kUserDefined = 32767;
 
 /// One entry of the directory: a number, where its value is, how many values, and the value itself
 /// or its place.
-using Entry = std::array<std::uint16_t, 4>;
+using KeyEntry = std::array<std::uint16_t, 4>;
 
-bool is_vertical(const Entry& e) { return e[0] >= kVertical && e[0] <= kVerticalUnits; }
+bool is_vertical(const KeyEntry& e) { return e[0] >= kVertical && e[0] <= kVerticalUnits; }
 
 /// The entries of a directory; none where it is cut off.
-std::optional<std::vector<Entry>> entries_of(const Bytes& directory) {
+std::optional<std::vector<KeyEntry>> entries_of(const Bytes& directory) {
   std::array<std::uint16_t, 4> head{};
   if (directory.size() < sizeof head) {
     return std::nullopt;
   }
   std::memcpy(head.data(), directory.data(), sizeof head);
-  std::vector<Entry> entries(head[3]);
-  const std::size_t bytes = entries.size() * sizeof(Entry);
+  std::vector<KeyEntry> entries(head[3]);
+  const std::size_t bytes = entries.size() * sizeof(KeyEntry);
   if (directory.size() - sizeof head < bytes) {
     return std::nullopt;
   }
@@ -66,27 +66,27 @@ std::optional<std::vector<Entry>> entries_of(const Bytes& directory) {
 
 /// The directory of entries. Its revision is that of GeoTIFF 1.0, in which GDAL takes codes of
 /// vertical datums for their CRSs, too.
-Bytes directory_of(const std::vector<Entry>& entries) {
-  const Entry head = {1, 1, 0, static_cast<std::uint16_t>(entries.size())};
+Bytes directory_of(const std::vector<KeyEntry>& entries) {
+  const KeyEntry head = {1, 1, 0, static_cast<std::uint16_t>(entries.size())};
   Bytes directory(sizeof head * (entries.size() + 1));
   std::memcpy(directory.data(), head.data(), sizeof head);
   if (!entries.empty()) {
-    std::memcpy(directory.data() + sizeof head, entries.data(), entries.size() * sizeof(Entry));
+    std::memcpy(directory.data() + sizeof head, entries.data(), entries.size() * sizeof(KeyEntry));
   }
   return directory;
 }
 
 /// The value of a key that is a code; 0 where it is not there.
-std::uint16_t code_of(const std::vector<Entry>& entries, Key key) {
+std::uint16_t code_of(const std::vector<KeyEntry>& entries, Key key) {
   const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& e) { return e[0] == key && e[1] == 0; });
+                                  [&](const KeyEntry& e) { return e[0] == key && e[1] == 0; });
   return found == entries.end() ? kUndefined : (*found)[3];
 }
 
 /// The text of a key; "" where it is not there.
-std::string text_of_key(const std::vector<Entry>& entries, Key key, const Bytes& text) {
+std::string text_of_key(const std::vector<KeyEntry>& entries, Key key, const Bytes& text) {
   const auto found = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& e) { return e[0] == key && e[1] == 34737; });
+                                  [&](const KeyEntry& e) { return e[0] == key && e[1] == 34737; });
   if (found == entries.end() || (*found)[3] >= text.size()) {
     return "";
   }
@@ -166,7 +166,7 @@ class KeyReader {
   explicit KeyReader(const GeoTiffKeys& keys) : keys_(keys) {}
 
   /// The CRS that some entries name, vertical part included; an empty one where GDAL knows none.
-  [[nodiscard]] OGRSpatialReference crs(const std::vector<Entry>& entries) const {
+  [[nodiscard]] OGRSpatialReference crs(const std::vector<KeyEntry>& entries) const {
     Bytes tiff = KeyTiff(directory_of(entries), keys_).bytes();
     const ReportedVerticalParts vertical;
     static constexpr const char* kDriver[] = {"GTiff", nullptr};
@@ -187,9 +187,9 @@ class KeyReader {
   }
 
   /// The CRS of keys of heights, with some CRS in plan, which GDAL wants before it looks at them.
-  [[nodiscard]] OGRSpatialReference crs_of_vertical(std::vector<Entry> entries) const {
+  [[nodiscard]] OGRSpatialReference crs_of_vertical(std::vector<KeyEntry> entries) const {
     entries.insert(entries.begin(),
-                   {Entry{kModelType, 0, 1, 1}, Entry{kProjectedCrs, 0, 1, 32631}});
+                   {KeyEntry{kModelType, 0, 1, 1}, KeyEntry{kProjectedCrs, 0, 1, 32631}});
     return crs(entries);
   }
 
@@ -199,7 +199,7 @@ class KeyReader {
     if (code == kUndefined || code == kUserDefined || is_angle_or_scale) {
       return std::nullopt;
     }
-    const OGRSpatialReference srs = crs_of_vertical({Entry{kVerticalUnits, 0, 1, code}});
+    const OGRSpatialReference srs = crs_of_vertical({KeyEntry{kVerticalUnits, 0, 1, code}});
     if (srs.IsCompound() == 0) {
       return std::nullopt;
     }
@@ -207,7 +207,7 @@ class KeyReader {
   }
 
   /// The words for the vertical part; "" for none.
-  [[nodiscard]] std::string citation(const std::vector<Entry>& entries) const {
+  [[nodiscard]] std::string citation(const std::vector<KeyEntry>& entries) const {
     return text_of_key(entries, kVerticalCitation, keys_.text);
   }
 
@@ -223,7 +223,7 @@ void warn(DeclaredCrs& declared, const char* kind, std::string message) {
 bool is_above_ellipsoid(std::uint16_t code) { return code >= 5001 && code <= 5033; }
 
 /// The code of the CRS in plan; 0 where none is named.
-std::uint16_t code_of_plane(const std::vector<Entry>& entries) {
+std::uint16_t code_of_plane(const std::vector<KeyEntry>& entries) {
   for (const Key key : {kProjectedCrs, kGeodeticCrs}) {
     const std::uint16_t code = code_of(entries, key);
     if (code != kUndefined && code != kUserDefined) {
@@ -234,7 +234,7 @@ std::uint16_t code_of_plane(const std::vector<Entry>& entries) {
 }
 
 /// Says of which kind the CRS is that a code names, where the key for that is absent or says nothing.
-void tell_model(std::vector<Entry>& entries) {
+void tell_model(std::vector<KeyEntry>& entries) {
   constexpr std::uint16_t kProjected = 1, kGeographic = 2;
   if (code_of(entries, kModelType) != kUndefined) {
     return;
@@ -244,8 +244,8 @@ void tell_model(std::vector<Entry>& entries) {
                               : code_of(entries, kGeodeticCrs) != kUndefined ? kGeographic
                                                                              : kUndefined;
   if (model != kUndefined) {
-    std::erase_if(entries, [](const Entry& e) { return e[0] == kModelType; });
-    entries.insert(entries.begin(), Entry{kModelType, 0, 1, model});
+    std::erase_if(entries, [](const KeyEntry& e) { return e[0] == kModelType; });
+    entries.insert(entries.begin(), KeyEntry{kModelType, 0, 1, model});
   }
 }
 
@@ -266,7 +266,7 @@ void add_ellipsoidal(OGRSpatialReference plane, const std::optional<LengthUnit>&
 }
 
 /// Adds what the keys of the vertical part say to what a horizontal CRS declares.
-void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
+void add_vertical(const std::vector<KeyEntry>& entries, const KeyReader& reader,
                   const OGRSpatialReference& plane, DeclaredCrs& declared) {
   const std::uint16_t code = code_of(entries, kVertical);
   const std::uint16_t unit_code = code_of(entries, kVerticalUnits);
@@ -280,9 +280,10 @@ void add_vertical(const std::vector<Entry>& entries, const KeyReader& reader,
     add_ellipsoidal(plane, unit, declared);
     return;
   }
-  std::vector<Entry> vertical;
-  std::copy_if(entries.begin(), entries.end(), std::back_inserter(vertical),
-               [&](const Entry& e) { return is_vertical(e) && (unit || e[0] != kVerticalUnits); });
+  std::vector<KeyEntry> vertical;
+  std::copy_if(
+      entries.begin(), entries.end(), std::back_inserter(vertical),
+      [&](const KeyEntry& e) { return is_vertical(e) && (unit || e[0] != kVerticalUnits); });
   const OGRSpatialReference both = reader.crs_of_vertical(std::move(vertical));
   if (both.GetAxesCount() == 3 && both.IsCompound() == 0) {
     add_ellipsoidal(plane, unit, declared);
@@ -332,7 +333,7 @@ DeclaredCrs crs_of_keys(const GeoTiffKeys& keys) {
   }
   const GdalSession session;
   const KeyReader reader(keys);
-  std::vector<Entry> horizontal;
+  std::vector<KeyEntry> horizontal;
   std::remove_copy_if(entries->begin(), entries->end(), std::back_inserter(horizontal),
                       is_vertical);
   const bool has_plane = code_of(horizontal, kModelType) != kUndefined ||
