@@ -22,8 +22,9 @@ namespace {
 
 using http::Problem;
 
-constexpr std::array<std::array<std::string_view, 5>, 2> kAxisNames = {
-    {{"lon", "long", "longitude", "e", "x"}, {"lat", "latitude", "n", "y", "northing"}}};
+constexpr std::array<std::array<std::string_view, 6>, 2> kAxisNames = {
+    {{"lon", "long", "longitude", "e", "easting", "x"},
+     {"lat", "latitude", "n", "northing", "y", "y"}}};
 
 [[noreturn]] void refuse_axes(std::string_view parameter, std::string_view what) {
   throw Problem(400, std::string(what) +
@@ -123,9 +124,7 @@ PixelFrame frame_covering(const Window& window, const std::array<double, 2>& siz
           static_cast<std::int64_t>(std::clamp(north - south, 1.0, kMostAlong))};
 }
 
-double side_of_own_pixel(const Asked& asked, const Places& places, MapPoint own,
-                         const Window& window) {
-  static_cast<void>(asked);
+double side_of_own_pixel(const Places& places, MapPoint own, const Window& window) {
   const MapPoint at = places.to_terrain(
       MapPoint{(window.min_x + window.max_x) / 2, (window.min_y + window.max_y) / 2}, "bbox");
   std::array<MapPoint, 3> corners{at, MapPoint{at.x + own.x, at.y}, MapPoint{at.x, at.y + own.y}};

@@ -30,7 +30,7 @@ struct PixelCounts {
 };
 
 /// The part of OGC's `subset` or `scale-size` for one axis: "Lat(34.3:34.4)" has "34.3:34.4". Axes are
-/// Lon, Long, Longitude, E or X, and Lat, Latitude, N or Y, in letters of any case.
+/// Lon, Long, Longitude, E, Easting or X, and Lat, Latitude, N, Northing or Y, in letters of any case.
 /// @param axis  0: the one to the east, 1: the one to the north.
 /// @throws http::Problem 400  it is no such list; an axis twice, or one that is not there
 [[nodiscard]] std::optional<std::string_view> part_for_axis(std::string_view list, int axis,
@@ -43,8 +43,7 @@ struct PixelCounts {
 [[nodiscard]] PixelFrame frame_covering(const Window& window, const std::array<double, 2>& size);
 /// The side of a square pixel of the client's CRS that is as large as one of the terrain's own in the middle
 /// of a window of the client's.
-[[nodiscard]] double side_of_own_pixel(const Asked& asked, const Places& places, MapPoint own,
-                                       const Window& window);
+[[nodiscard]] double side_of_own_pixel(const Places& places, MapPoint own, const Window& window);
 
 /// The heights at the centres of the pixels, block by block, each as locate() gives it.
 /// @param places  Of the CRS of the frame and of `target`.

@@ -334,7 +334,7 @@ tools::WrittenRaster sample_in(const Asked& asked, const RasterQuestion& questio
     frame = frame_covering(window, size_of(asked, question.pixel_size));
   } else {
     const std::array<double, 2> own = size_of(asked, {});
-    const double side = side_of_own_pixel(asked, places, {own[0], own[1]}, window);
+    const double side = side_of_own_pixel(places, {own[0], own[1]}, window);
     if (!(side > 0)) {
       throw Problem(400, "pixels have no size in the middle of this window; give one")
           .at(kPixelSize);
