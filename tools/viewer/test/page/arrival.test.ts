@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { host } from '../../../decoder/test/host.mjs';
 import { file, ptin } from '../../../decoder/test/support';
-import { appears, colours, complete, counted, fast, layOut, onPage, portioned, rested, site, store, text, until, wide } from './browser';
+import { appears, colours, complete, counted, fast, layOut, onPage, portioned, rested, site, store, text, until } from './browser';
 
 test('the page shows the terrain while it arrives, and then rests', () => onPage(portioned.url, async (page) => {
   // The host waits after each portion, so that nothing here depends on which of them is faster, the page or its data.
@@ -30,7 +30,7 @@ test('the page shows the terrain while it arrives, and then rests', () => onPage
   const pictures = await rested(page);
   await page.waitForTimeout(500);
   assert.equal(await rested(page), pictures, 'nothing is drawn while nothing changes');
-}, { screen: wide }));
+}));
 
 test('what is wrong is said in a sentence', async () => {
   const whole = readFileSync(file('mountains_257.ptins'));

@@ -19,11 +19,13 @@ declare global {
     ptinViewer: {
       frame: Frame;
       status: { certificate: Certificate };
+      /** The address of what is shown. */
+      address: string;
       relief: {
-        pictures: number; camera: Camera; drawn: DrawnMesh;
+        pictures: number; camera: Camera; drawn: DrawnMesh; pending: boolean; sharpness: number;
         groundAt(x: number, y: number): number | null; pick(x: number, y: number): unknown;
       };
-      view: { current: Pose; exaggeration: number; project(x: number, y: number, z: number): { x: number; y: number; visible: boolean } };
+      view: { current: Pose; exaggeration: number; flight: object | null; project(x: number, y: number, z: number): { x: number; y: number; visible: boolean } };
     };
   }
 }
@@ -114,7 +116,7 @@ async function newPage(screen: BrowserContextOptions): Promise<Page> {
 
 /** Waits until something holds on the page. A poll at each frame would keep the page at work. */
 export async function until(page: Page, holds: (given: number[]) => boolean, given: number[] = []): Promise<void> {
-  await page.waitForFunction(holds, given, { polling: 100 });
+  await page.waitForFunction(holds, given, { polling: 40 });
 }
 
 export async function complete(page: Page): Promise<void> {
@@ -122,13 +124,14 @@ export async function complete(page: Page): Promise<void> {
   await rested(page);
 }
 
-/** Waits until the picture is drawn and nothing more is asked for. Returns the number of pictures. */
+/** Waits until the picture is drawn whole and the camera stands. Returns the number of pictures. */
 export async function rested(page: Page): Promise<number> {
   return page.evaluate(async () => {
-    const { relief } = window.ptinViewer;
-    for (let before = -1; before !== relief.pictures;) {
-      before = relief.pictures;
-      await new Promise((resolve) => { setTimeout(resolve, 700); });
+    const { relief, view } = window.ptinViewer;
+    // Twice in a row: a message of the Worker may lie between.
+    for (let times = 0; times < 2;) {
+      await new Promise((resolve) => { setTimeout(resolve, 40); });
+      times = relief.pending || relief.sharpness < 1 || view.flight !== null ? 0 : times + 1;
     }
     return relief.pictures;
   });
@@ -136,12 +139,9 @@ export async function rested(page: Page): Promise<number> {
 
 /** The address of the page once its view rests. It is written some time after the last key. */
 export async function lastLink(page: Page): Promise<string> {
-  for (let before = '';;) {
-    await rested(page);
-    const link = page.url();
-    if (link === before) return link;
-    before = link;
-  }
+  await rested(page);
+  await until(page, () => location.href === location.origin + window.ptinViewer.address);
+  return page.url();
 }
 
 /** How many colours the middle of the picture has. */
@@ -181,7 +181,6 @@ type Pixel = readonly [x: number, y: number];
 export async function askAlong(page: Page, key: 'p' | 's', a: Pixel, b: Pixel, between?: () => Promise<void>): Promise<void> {
   await page.keyboard.press(key);
   await page.mouse.click(...a);
-  await page.waitForTimeout(200);
   await between?.();
   await page.mouse.click(...b);
   if (key === 'p') await page.waitForSelector('#plot .surface');
@@ -217,12 +216,12 @@ export function compareRows(rows: number[][], wanted: number[][], slack: number)
   });
 }
 
-/** Whatever axe finds on a page that has its script. */
-export function faultsOfAxe(page: Page): Promise<string[]> {
-  return page.evaluate(async () => {
+/** Whatever axe finds on a page that has its script, by all of its rules or by those of some names. */
+export function faultsOfAxe(page: Page, rules?: string[]): Promise<string[]> {
+  return page.evaluate(async (runOnly) => {
     const { axe } = window as unknown as {
-      axe: { run(): Promise<{ violations: Array<{ id: string; nodes: Array<{ html: string }> }> }> };
+      axe: { run(options: object): Promise<{ violations: Array<{ id: string; nodes: Array<{ html: string }> }> }> };
     };
-    return (await axe.run()).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 120)).join(' | ')}`);
-  });
+    return (await axe.run(runOnly === undefined ? {} : { runOnly })).violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html.slice(0, 120)).join(' | ')}`);
+  }, rules);
 }

@@ -7,7 +7,7 @@ import type { Page } from 'playwright-core';
 import { complete, fast, lastLink, onPage, rested, savedCsv, text, told, until } from './browser';
 
 const noted = (page: Page, pattern: string): Promise<void> => page.waitForFunction(
-  (p) => new RegExp(p).test(document.getElementById('answer-note')!.textContent!), pattern, { polling: 100 }) as unknown as Promise<void>;
+  (p) => new RegExp(p).test(document.getElementById('answer-note')!.textContent!), pattern, { polling: 40 }) as unknown as Promise<void>;
 
 test('keys alone place points, take one back, and a link asks the same again', async () => {
   let link = '';
@@ -21,12 +21,12 @@ test('keys alone place points, take one back, and a link asks the same again', a
     const two = Number((await told(page)).length);
     await page.keyboard.press('ArrowUp');
     await page.keyboard.press('Enter');
-    await page.waitForFunction((l) => Number(document.getElementById('answer')!.dataset.length) > l * 1.01, two, { polling: 100 });
+    await page.waitForFunction((l) => Number(document.getElementById('answer')!.dataset.length) > l * 1.01, two, { polling: 40 });
     length = Number((await told(page)).length);
     await page.keyboard.press('Backspace');
-    await page.waitForFunction((l) => Math.abs(Number(document.getElementById('answer')!.dataset.length) / l - 1) < 1e-9, two, { polling: 100 });
+    await page.waitForFunction((l) => Math.abs(Number(document.getElementById('answer')!.dataset.length) / l - 1) < 1e-9, two, { polling: 40 });
     await page.keyboard.press('Enter');
-    await page.waitForFunction((l) => Math.abs(Number(document.getElementById('answer')!.dataset.length) / l - 1) < 1e-9, length, { polling: 100 });
+    await page.waitForFunction((l) => Math.abs(Number(document.getElementById('answer')!.dataset.length) / l - 1) < 1e-9, length, { polling: 40 });
     link = await lastLink(page);
     assert.match(link, /ask=profile:/);
     await page.locator('#answer-close').focus();
