@@ -35,15 +35,17 @@ export interface DrawnMesh {
 
 /** Cost: linear. */
 export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
-  const positions = drawnPositions(mesh, frame);
+  const asDecoded = drawnPositions(mesh, frame);
   const kinds = kindsOf(mesh, frame.facts);
-  const { corners, parts } = partedCorners(mesh, kinds, positions, frame);
+  const { corners, parts } = partedCorners(mesh, kinds, asDecoded, frame);
+  const borders = drawnWalls(mesh, asDecoded);
+  const positions = inOrderOfUse(corners, asDecoded);
   const landCorners = corners.subarray(0, parts[tilesAcross * tilesAcross]);
   const surface = corners.subarray(0, surfaceEnd(parts));
   const raster = new SurfaceRaster(positions, landCorners);
   return {
     positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
-    tileExtents: tileExtentsOf(positions, corners, parts), ...drawnWalls(mesh, positions), grid: gridOf(positions, surface), spread: raster.spread,
+    tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface), spread: raster.spread,
     extent: extentOf(positions, surface),
   };
 }
@@ -102,29 +104,63 @@ function levelVoids({ triangles, triangleCount, classes }: MeshView, positions: 
   for (let at = 2; at < positions.length; at += 3) if (Number.isNaN(positions[at])) positions[at] = 0;
 }
 
+/** Squares of a tile along each side, a power of two: what they hold is drawn along a Hilbert curve. */
+const squaresAcross = 64;
+
+/** Corners by what the triangles are, tile by tile; in a tile neighbours follow each other, which share what is computed of corners. */
 function partedCorners(
   { triangles, triangleCount }: MeshView, kinds: Uint8Array, positions: Float32Array, frame: Frame,
 ): { corners: Uint32Array; parts: Uint32Array } {
-  const tiles = tilesAcross * tilesAcross;
-  const partOf = new Uint8Array(triangleCount);
-  const parts = new Uint32Array(tiles + 3);
-  const tile = (v: number, of: number): number => Math.max(0, Math.min(tilesAcross - 1, Math.floor((v / Math.max(of, 1e-6) + 0.5) * tilesAcross)));
+  const squares = squaresAcross * squaresAcross, across = tilesAcross * squaresAcross, tiles = tilesAcross * tilesAcross;
+  const squareOf = new Uint32Array(triangleCount);
+  const starts = new Uint32Array((tiles + 2) * squares + 1);
+  const square = (v: number, of: number): number => Math.max(0, Math.min(across - 1, Math.floor((v / Math.max(of, 1e-6) + 0.5) * across)));
   for (let t = 0; t < triangleCount; ++t) {
     const v = 3 * triangles[triangleWords * t];
-    const part = kinds[t] === land ? tile(positions[v + 1], frame.depth) * tilesAcross + tile(positions[v], frame.width)
+    const x = square(positions[v], frame.width), y = square(positions[v + 1], frame.depth);
+    const part = kinds[t] === land ? Math.floor(y / squaresAcross) * tilesAcross + Math.floor(x / squaresAcross)
       : kinds[t] === water ? tiles : tiles + 1;
-    partOf[t] = part;
-    parts[part + 1] += 3;
+    squareOf[t] = part * squares + alongCurve(x % squaresAcross, y % squaresAcross);
+    starts[squareOf[t] + 1] += 3;
   }
-  for (let part = 1; part < parts.length; ++part) parts[part] += parts[part - 1];
+  for (let s = 1; s < starts.length; ++s) starts[s] += starts[s - 1];
+  const parts = Uint32Array.from({ length: tiles + 3 }, (_, part) => starts[part * squares]);
   const corners = new Uint32Array(3 * triangleCount);
-  const next = parts.slice();
   for (let t = 0, from = 0; t < triangleCount; ++t, from += triangleWords) {
-    const to = next[partOf[t]];
+    const to = starts[squareOf[t]];
     for (let k = 0; k < 3; ++k) corners[to + k] = triangles[from + k];
-    next[partOf[t]] += 3;
+    starts[squareOf[t]] += 3;
   }
   return { corners, parts };
+}
+
+/** How far along a Hilbert curve a square of a tile is. */
+function alongCurve(x: number, y: number): number {
+  let along = 0;
+  for (let side = squaresAcross / 2; side > 0; side /= 2) {
+    const right = (x & side) > 0 ? 1 : 0, up = (y & side) > 0 ? 1 : 0;
+    along += side * side * ((3 * right) ^ up);
+    if (up === 1) continue;
+    if (right === 1) [x, y] = [squaresAcross - 1 - x, squaresAcross - 1 - y];
+    [x, y] = [y, x];
+  }
+  return along;
+}
+
+/** Numbers vertices as the corners come to them, so that those of neighbours lie together; returns their positions in that order. */
+function inOrderOfUse(corners: Uint32Array, positions: Float32Array): Float32Array {
+  const numbers = new Uint32Array(positions.length / 3).fill(none);
+  const ordered = new Float32Array(positions.length);
+  let next = 0;
+  for (let i = 0; i < corners.length; ++i) {
+    const from = corners[i];
+    if (numbers[from] === none) {
+      for (let k = 0; k < 3; ++k) ordered[3 * next + k] = positions[3 * from + k];
+      numbers[from] = next++;
+    }
+    corners[i] = numbers[from];
+  }
+  return ordered.slice(0, 3 * next);
 }
 
 /** Where a vertex has no land, up. */
@@ -183,19 +219,24 @@ function drawnWalls({ triangles, triangleCount }: MeshView, positions: Float32Ar
   return { walls, wallNormals };
 }
 
-/** Every edge of the surface once, as two vertices. Cost: linear. */
-export function surfaceEdges(mesh: MeshView): Uint32Array {
-  const { triangles, classes, triangleCount } = mesh;
-  const edges = new Uint32Array(6 * triangleCount);
+/** Every edge of some triangles once, as two vertices. Cost: linear. */
+export function edgesOf(corners: Uint32Array, vertexCount: number): Uint32Array {
+  const least = (i: number): [low: number, high: number] => {
+    const a = corners[i], b = corners[i % 3 === 2 ? i - 2 : i + 1];
+    return a < b ? [a, b] : [b, a];
+  };
+  const starts = new Uint32Array(vertexCount + 1);
+  for (let i = 0; i < corners.length; ++i) ++starts[least(i)[0] + 1];
+  for (let v = 0; v < vertexCount; ++v) starts[v + 1] += starts[v];
+  const ends = starts.slice(), others = new Uint32Array(corners.length), edges = new Uint32Array(2 * corners.length);
   let count = 0;
-  for (let t = 0, at = 0; t < triangleCount; ++t, at += triangleWords) {
-    if (classes[t] !== 0) continue;
-    for (let i = 0; i < 3; ++i) {
-      const across = triangles[at + 3 + i];
-      if (across !== none && across < t && classes[across] === 0) continue;
-      edges[count++] = triangles[at + (i + 1) % 3];
-      edges[count++] = triangles[at + (i + 2) % 3];
-    }
+  for (let i = 0; i < corners.length; ++i) {
+    const [low, high] = least(i);
+    const known = others.subarray(starts[low], ends[low]);
+    if (known.includes(high)) continue;
+    others[ends[low]++] = high;
+    edges[count++] = low;
+    edges[count++] = high;
   }
   return edges.slice(0, count);
 }

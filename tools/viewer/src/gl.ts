@@ -97,6 +97,51 @@ export class Vertices {
   }
 }
 
+/**
+ * Draws with smooth edges: four samples a pixel, apart from the canvas, whose own could not be left away while a slow card has to
+ * hurry.
+ */
+export class Smooth {
+  private target: WebGLFramebuffer | null = null;
+  private readonly colour: WebGLRenderbuffer | null;
+  private readonly depth: WebGLRenderbuffer | null;
+  private readonly samples: number;
+  private size: readonly [number, number] = [0, 0];
+
+  constructor(private readonly gl: WebGL2RenderingContext) {
+    this.samples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES) as number);
+    this.colour = gl.createRenderbuffer();
+    this.depth = gl.createRenderbuffer();
+  }
+
+  /** What is drawn until `end` is smooth. */
+  begin(width: number, height: number): void {
+    const { gl, size, samples } = this;
+    if (samples < 2) return;
+    this.target ??= gl.createFramebuffer();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    if (size[0] === width && size[1] === height) return;
+    this.size = [width, height];
+    for (const [buffer, format, place] of [
+      [this.colour, gl.RGBA8, gl.COLOR_ATTACHMENT0], [this.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT],
+    ] as const) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+    }
+  }
+
+  /** Shows what was drawn since `begin`. */
+  end(): void {
+    const { gl, target, size: [width, height] } = this;
+    if (this.samples < 2) return;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+}
+
 /** A picture as a texture, bound to its unit. Neither is repeated nor shrunk by steps. */
 export function texture(gl: WebGL2RenderingContext, unit: number, picture: Uint8Array | ImageBitmap): WebGLTexture {
   const made = gl.createTexture()!;

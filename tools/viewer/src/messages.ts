@@ -19,7 +19,6 @@ export type ToWorker =
   | { kind: 'limit'; error: number }
   /** What the camera looks at, the coarsest part first. Static streams ignore it. */
   | { kind: 'view'; wanted: Wanted[] }
-  | { kind: 'edges'; wanted: boolean }
   | { kind: 'ask'; ticket: number; question: Question };
 
 export type Question =
@@ -110,7 +109,6 @@ export interface About {
 export type FromWorker =
   | { kind: 'terrain'; facts: Facts; units: Units; earth: Earth; name: string; about: About }
   | { kind: 'mesh'; mesh: DrawnMesh; status: Status }
-  | { kind: 'edges'; edges: Uint32Array }
   | { kind: 'status'; status: Status }
   | { kind: 'answer'; ticket: number; answer: Answer }
   | { kind: 'refused'; ticket: number; message: string }

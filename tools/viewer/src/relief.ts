@@ -2,14 +2,13 @@
 //
 // The picture: sky, relief, plinth, edges, and the marks on it. Drawn only when something changed; rougher while it moves, where
 // the card is slow.
-import type { DrawnMesh } from './drawn_mesh';
+import { type DrawnMesh, edgesOf, surfaceEnd, tilesAcross } from './drawn_mesh';
 import { type Place, type Seen, Marks, pageColour } from './marks';
 import type { Frame } from './frame';
-import { Program, texture, Vertices } from './gl';
+import { Program, Smooth, texture, Vertices } from './gl';
 import { heightStops, rampPixels, slopeStops } from './ramps';
 import { groundFragment, groundVertex, skyFragment, skyVertex, wallFragment, wallVertex } from './shaders';
 import { Camera, lengthOf, sum, type Triple } from './space';
-import { tilesAcross } from './drawn_mesh';
 import type { Spread } from './surface_raster';
 import { Ground } from './triangle_grid';
 
@@ -23,10 +22,10 @@ export interface Sun {
 }
 
 const radians = Math.PI / 180;
-/** Milliseconds: a picture that takes longer while the camera moves is drawn with fewer pixels, and whole once it rests. */
+/** Milliseconds: where a picture takes longer, there are fewer pixels while the camera moves, and all of them once it rests. */
 const slowPicture = 28, restAfter = 180;
 /** Of the pixels along a side, while it moves. */
-const roughest = 0.4;
+const roughest = 0.35;
 
 const waterColour = [0.50, 0.69, 0.81], voidColour = [0.894, 0.894, 0.902], stoneColour = [0.66, 0.63, 0.59];
 
@@ -45,6 +44,7 @@ export class Relief {
   private readonly sky: Program;
   private readonly skyVertices: Vertices;
   private readonly marks: Marks;
+  private readonly smooth: Smooth;
   private ground: Vertices | null = null;
   private walls: Vertices | null = null;
   private edges: Vertices | null = null;
@@ -67,7 +67,7 @@ export class Relief {
   private size: readonly [width: number, height: number] = [1, 1];
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    const gl = canvas.getContext('webgl2', { antialias: true, alpha: false, powerPreference: 'high-performance' });
+    const gl = canvas.getContext('webgl2', { antialias: false, powerPreference: 'high-performance' });
     if (gl === null) throw new Error('no WebGL 2');
     this.gl = gl;
     this.plain = new Program(gl, groundVertex, groundFragment(false));
@@ -75,13 +75,14 @@ export class Relief {
     this.sky = new Program(gl, skyVertex, skyFragment);
     this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
     this.marks = new Marks(gl);
+    this.smooth = new Smooth(gl);
     texture(gl, 0, rampPixels(heightStops));
     texture(gl, 1, rampPixels(slopeStops));
     texture(gl, 2, new Uint8Array(4));
     this.plain.sampler('ramp', 0);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.polygonOffset(1, 1);
   }
 
@@ -121,13 +122,6 @@ export class Relief {
   /** The share of `way` from a place at which the ground is met, both without exaggeration; null where it is not. */
   meets(from: Triple, way: Triple): number | null {
     return this.under?.meets(from, way) ?? null;
-  }
-
-  /** Edges of the mesh that was set last. */
-  setEdges(edges: Uint32Array): void {
-    this.edges?.free();
-    this.edges = this.drawn === null ? null : new Vertices(this.gl, [{ at: 0, numbers: this.drawn.positions, size: 3 }], edges);
-    this.draw();
   }
 
   set wireframe(on: boolean) {
@@ -192,12 +186,18 @@ export class Relief {
   /** The camera moves: pictures may be rougher until it rests. */
   moves(): void {
     this.sharpness = this.movingSharpness;
+    this.restLater();
+    this.draw();
+  }
+
+  private restLater(): void {
     clearTimeout(this.restTimer);
-    this.restTimer = window.setTimeout(() => {
-      if (this.sharpness === 1) return;
-      this.sharpness = 1;
-      this.draw();
-    }, restAfter);
+    this.restTimer = window.setTimeout(() => { this.rests(); }, restAfter);
+  }
+
+  private rests(): void {
+    if (this.sharpness === 1) return;
+    this.sharpness = 1;
     this.draw();
   }
 
@@ -259,16 +259,18 @@ export class Relief {
     const { gl, camera } = this;
     const begin = performance.now();
     const ratio = this.fit();
+    if (this.sharpness === 1) this.smooth.begin(this.canvas.width, this.canvas.height);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clear(gl.DEPTH_BUFFER_BIT);
     const seen: Seen = { matrix: camera.matrix, eye: camera.position, exaggeration: this.exaggeration };
     this.drawGround(seen, ratio);
     this.drawWalls(seen);
     this.drawSky();
-    if (this.edgesShown && this.edges !== null) this.marks.drawEdges(this.edges, seen);
+    this.drawEdges(seen);
     this.marks.draw(seen, [this.canvas.width, this.canvas.height], ratio);
+    if (this.sharpness === 1) this.smooth.end();
     ++this.pictures;
-    if (this.sharpness === this.movingSharpness && this.restTimer !== 0) this.paced(begin);
+    this.awaitPicture(begin, this.sharpness);
   }
 
   /** Makes the drawing as large as it is to be. Returns its pixels for one of the page. */
@@ -279,15 +281,34 @@ export class Relief {
     return ratio;
   }
 
-  /** While the camera moves: takes fewer pixels from now on where a picture came late after the one before. */
-  private paced(begin: number): void {
-    if (this.movedAt !== 0 && begin - this.movedAt < 250) {
-      const took = begin - this.movedAt;
-      if (took > slowPicture) this.movingSharpness = Math.max(roughest, this.movingSharpness * 0.8);
-    }
-    this.movedAt = begin;
+  /** Looks until a picture is done, of which the card tells nothing by itself, and learns from how long it took. */
+  private awaitPicture(begin: number, sharpness: number): void {
+    const { gl } = this;
+    gl.deleteSync(this.awaited);
+    const fence = this.awaited = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = (): void => {
+      if (fence === null || this.awaited !== fence) return;
+      if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) {
+        setTimeout(look, 4);
+        return;
+      }
+      gl.deleteSync(fence);
+      this.awaited = null;
+      this.pace(performance.now() - begin, sharpness);
+      // A picture that took long has held up the next step of whoever moves the camera.
+      if (this.sharpness < 1) this.restLater();
+    };
+    setTimeout(look);
   }
-  private movedAt = 0;
+  private awaited: WebGLSync | null = null;
+
+  /** Time goes with pixels, nearly. A picture that is quick by far lets the next one be sharper again. */
+  private pace(took: number, sharpness: number): void {
+    const wanted = Math.max(roughest, Math.min(1, sharpness * Math.sqrt(slowPicture / Math.max(1, took))));
+    if (took > slowPicture) this.movingSharpness = Math.min(this.movingSharpness, wanted);
+    else if (took < slowPicture / 3 && sharpness === this.movingSharpness) this.movingSharpness = Math.min(1, 1.2 * sharpness);
+  }
 
   private get key(): Triple {
     const azimuth = this.sunNow.azimuth * radians + this.camera.heading, altitude = this.sunNow.altitude * radians;
@@ -304,6 +325,8 @@ export class Relief {
       hatch: ratio, ...this.details,
     };
     gl.enable(gl.POLYGON_OFFSET_FILL);
+    // The camera is above the ground.
+    gl.enable(gl.CULL_FACE);
     (this.hasDetails ? this.detailed ??= this.detailedMade() : this.plain).use(common);
     for (const tile of this.tilesInSight(drawn)) ground.draw(gl.TRIANGLES, drawn.parts[tile], drawn.parts[tile + 1] - drawn.parts[tile]);
     const tiles = tilesAcross * tilesAcross;
@@ -314,6 +337,7 @@ export class Relief {
       ground.draw(gl.TRIANGLES, drawn.parts[part], count);
     }
     gl.disable(gl.POLYGON_OFFSET_FILL);
+    gl.disable(gl.CULL_FACE);
   }
 
   private detailedMade(): Program {
@@ -350,6 +374,16 @@ export class Relief {
       seen.push([lengthOf(sum([(west + east) / 2, (south + north) / 2, 0], camera.position, -1)), tile]);
     }
     return seen.sort((a, b) => a[0] - b[0]).map(([, tile]) => tile);
+  }
+
+  private drawEdges(seen: Seen): void {
+    const { drawn } = this;
+    if (!this.edgesShown || drawn === null) return;
+    const { positions, corners, parts } = drawn;
+    this.edges ??= new Vertices(
+      this.gl, [{ at: 0, numbers: positions, size: 3 }], edgesOf(corners.subarray(0, surfaceEnd(parts)), positions.length / 3),
+    );
+    this.marks.drawEdges(this.edges, seen);
   }
 
   private drawWalls(seen: Seen): void {

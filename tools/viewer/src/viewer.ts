@@ -161,7 +161,6 @@ class Viewer {
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);
         break;
-      case 'edges': this.relief.setEdges(message.edges); break;
       case 'status': if (this.firstVertices === 0) this.show(message.status); break;
       case 'answer':
       case 'refused': this.inquiry.take(message); break;
@@ -253,10 +252,7 @@ class Viewer {
     if (key === 'azimuth' || key === 'altitude') this.relief.sun = s;
     if (key === 'interval') this.relief.isolines = s.interval;
     if (key === 'error') this.send({ kind: 'limit', error: s.error });
-    if (key === 'wireframe') {
-      this.relief.wireframe = s.wireframe;
-      this.send({ kind: 'edges', wanted: s.wireframe });
-    }
+    if (key === 'wireframe') this.relief.wireframe = s.wireframe;
     if (key === 'exaggeration') this.relief.verticalScale = this.view.exaggeration = s.exaggeration || 1;
     this.keepLink();
   }

@@ -2,7 +2,7 @@
 //
 // The Worker: opens a terrain, hands the page meshes to draw, and passes its questions on.
 import { type Certified, DecodeError, type Decoder, HostedBytes, mapCrsOf, Problem, toldBy } from 'ptin-decoder';
-import { buffersOf, drawnMesh, surfaceEdges } from './drawn_mesh';
+import { buffersOf, drawnMesh } from './drawn_mesh';
 import { earthOf } from './earth';
 import { moduleAt } from './fetching';
 import { FileView } from './file_view';
@@ -41,20 +41,12 @@ class Session {
   private drawn: { decoder: Decoder; vertices: number; numbering: number } | null = null;
   private lastDrawn = 0;
   private drawingTook = 0;
-  private edgesWanted = false;
 
   constructor(open: (events: ViewEvents) => TerrainView) {
     this.view = open({
       grown: () => { this.draw(false); }, settled: () => { this.draw(true); }, failed: tell, mended: () => { say({ kind: 'mended' }); },
     });
     this.view.run().catch(tell);
-  }
-
-  sendEdges(wanted: boolean): void {
-    this.edgesWanted = wanted;
-    if (!wanted || !this.view.decoder.hasMesh) return;
-    const edges = surfaceEdges(this.view.decoder.mesh);
-    say({ kind: 'edges', edges }, [edges.buffer]);
   }
 
   async ask(ticket: number, question: Question): Promise<void> {
@@ -109,7 +101,6 @@ class Session {
     this.drawn = { decoder, vertices: mesh.vertexCount, numbering };
     this.drawnCertified = certified;
     say({ kind: 'mesh', mesh: made, status: this.status }, buffersOf(made));
-    if (this.edgesWanted) this.sendEdges(true);
     this.lastDrawn = performance.now();
     this.drawingTook = this.lastDrawn - begin;
   }
@@ -145,7 +136,6 @@ self.onmessage = (event: MessageEvent<ToWorker>): void => {
   session?.then((s) => {
     if (message.kind === 'limit') s.view.setLimit(message.error);
     if (message.kind === 'view') s.view.setView(message.wanted);
-    if (message.kind === 'edges') s.sendEdges(message.wanted);
     if (message.kind === 'ask') void s.ask(message.ticket, message.question);
   }).catch(() => undefined);
 };

@@ -5,7 +5,7 @@ import { certifiedAt, type CertifiedPart, certifiedWithin, HostedBytes, toldBy, 
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { type DrawnMesh, drawnMesh, surfaceEdges, surfaceEnd } from '../src/drawn_mesh';
+import { type DrawnMesh, drawnMesh, edgesOf, surfaceEnd } from '../src/drawn_mesh';
 import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
 import { FileView } from '../src/file_view';
@@ -212,7 +212,7 @@ test('what is drawn has upward normals, every edge of the surface once, its void
   assert.equal(corners.length, 3 * surface);
   assert.equal(drawn.corners.length, 3 * mesh.triangleCount);
   for (const v of corners) assert.ok(drawn.normals[4 * v + 2] > 0);
-  const edges = surfaceEdges(mesh);
+  const edges = edgesOf(corners, drawn.positions.length / 3);
   const names = new Set<string>();
   for (let i = 0; i < edges.length; i += 2) {
     const [a, b] = [edges[i], edges[i + 1]].sort((p, q) => p - q);

@@ -93,10 +93,10 @@ export async function onPage(
 
 /** Has the pictures of a document drawn without smooth edges, each of which costs four samples a pixel. */
 function drawsRoughly(): void {
-  const { getContext } = HTMLCanvasElement.prototype;
-  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, options?: object) {
-    return (getContext as (kind: string, options: object) => RenderingContext | null).call(this, kind, { ...options, antialias: false });
-  } as typeof getContext;
+  const { getParameter } = WebGL2RenderingContext.prototype;
+  WebGL2RenderingContext.prototype.getParameter = function (this: WebGL2RenderingContext, name: number): unknown {
+    return name === WebGL2RenderingContext.MAX_SAMPLES ? 1 : getParameter.call(this, name);
+  };
 }
 
 async function newPage(screen: BrowserContextOptions): Promise<Page> {
