@@ -17,6 +17,7 @@ repeated     with --repeated alone: pages that the system gave the service (mino
 """
 import argparse
 import json
+import math
 import os
 import random
 import re
@@ -200,6 +201,20 @@ def tiles(arguments, service, how, count):
     open_loop(arguments, service, f"quantized-mesh tile of the five finest levels, {how}", targets)
 
 
+def heights(arguments, service, how, count):
+    """Tiles of heights as colours, 256 x 256, PNG, of places drawn within the bounds, by zooms drawn among the five finest."""
+    facts = json.loads(service.ask("/collections/dem/dem/tilejson.json?encoding=terrarium")[1])
+    west, south, east, north = facts["bounds"]
+    chosen = random.Random(4)
+    targets = []
+    for _ in range(count):
+        z = chosen.randrange(max(0, facts["maxzoom"] - 4), facts["maxzoom"] + 1)
+        x = (chosen.uniform(west, east) + 180) / 360
+        y = 0.5 - math.asinh(math.tan(math.radians(chosen.uniform(south, north)))) / (2 * math.pi)
+        targets.append(f"/collections/dem/dem/{z}/{int(x * 2**z)}/{int(y * 2**z)}.png?encoding=terrarium")
+    open_loop(arguments, service, f"heights as colours of the five finest zooms, {how}", targets)
+
+
 def flatness(arguments, service, places):
     targets = [mixed(places) for _ in range(20000)]
     with tempfile.NamedTemporaryFile("w") as file:
@@ -281,10 +296,12 @@ def main():
     batches(arguments, service, places, lon_lat)
     meshes(arguments, service, places, "from the cache", 8)
     tiles(arguments, service, "from the cache", 32)
+    heights(arguments, service, "from the cache", 32)
     bare = started("--limit", "cache_bytes=1")
     open_loop(arguments, bare, "one exact height", [position(places) for _ in range(20000)])
     meshes(arguments, bare, places, "made", 500)
     tiles(arguments, bare, "made", 3000)
+    heights(arguments, bare, "made", 300)
     bare.end()
     flatness(arguments, service, places)
     hang_ups(service, places)

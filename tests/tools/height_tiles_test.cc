@@ -254,7 +254,7 @@ TEST(Pmtiles, TellOfATerrainAcrossTheAntimeridianThatItGoesAround) {
     std::memcpy(&number, file.data() + at, sizeof number);
     return number;
   };
-  // Of the header: west, east, and the longitude of the middle.
+  // The header has west, east and the longitude of the middle.
   EXPECT_EQ(number_at(102), -1800000000);
   EXPECT_EQ(number_at(110), 1800000000);
   EXPECT_NEAR(number_at(119), 1800000000, 10);

@@ -95,7 +95,7 @@ TEST_F(ServeLookup, SaysWhatIsWrong) {
     EXPECT_EQ(refused.status, 400) << query;
     EXPECT_FALSE(refused.json().at("error").get<std::string>().empty()) << refused.body;
   }
-  // What came as JSON is no encoded polyline, though its text may be one.
+  // An array of JSON is no encoded polyline, though its text may be one.
   for (const json& locations :
        {json::array(), json{json::array()}, json{json::object()}, json(1)}) {
     const HttpAnswer refused = served_->post("/api/v1/lookup", {{"locations", locations}});

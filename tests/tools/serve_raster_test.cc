@@ -134,7 +134,7 @@ TEST_F(Serve, TakesTheWindowAndThePixelsOfARasterAsOgcWritesThem) {
   const std::string box = "-118.31,34.34,-118.3,34.35";
   EXPECT_EQ(body_of("&subset=Lat(34.34:34.35),Lon(-118.31:-118.3)"), body_of("&bbox=" + box));
   EXPECT_EQ(body_of("&subset=e(*:*)&subset-crs=native"), body_of(""));
-  // Of a window beyond the terrain there is what they have in common.
+  // A window beyond the terrain gives what they have in common.
   EXPECT_EQ(body_of("&bbox=-180,-90,180,90"), body_of(""));
   for (const std::string crs : {"native", "EPSG:3857"}) {
     const HttpAnswer answer =

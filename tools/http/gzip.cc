@@ -43,10 +43,11 @@ bool takes_gzip(std::string_view accept_encoding) {
   return by_name >= 0.0 ? by_name > 0.0 : by_star > 0.0;
 }
 
-std::string gzip(std::string_view text) {
-  constexpr int kLevel = 5, kWindow = 15, kWithGzipHead = 16, kMemory = 8;
+std::string gzip(std::string_view text, GzipFor use) {
+  const int level = use == GzipFor::kManyAnswers ? 9 : 5;
+  constexpr int kWindow = 15, kWithGzipHead = 16, kMemory = 8;
   z_stream stream{};
-  if (::deflateInit2(&stream, kLevel, Z_DEFLATED, kWindow + kWithGzipHead, kMemory,
+  if (::deflateInit2(&stream, level, Z_DEFLATED, kWindow + kWithGzipHead, kMemory,
                      Z_DEFAULT_STRATEGY) != Z_OK) {
     throw Error(ErrorCode::resource_exhausted, "zlib is refused memory");
   }

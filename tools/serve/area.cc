@@ -373,7 +373,7 @@ MapPoint nearest_of(const MapPoint& a, const MapPoint& b, const MapPoint& p, con
   return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
 }
 
-/// What lies within metres of lines in the terrain's CRS, over ground, which in degrees is along the
+/// The positions within metres of lines in the terrain's CRS, over ground, which in degrees is along the
 /// ellipsoid; a position is a line of one corner.
 Shape around(const Asked& asked, const Places& places, std::vector<std::vector<MapPoint>> lines,
              double metres) {

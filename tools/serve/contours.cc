@@ -44,7 +44,7 @@ http::Response contours_tilejson(const Asked& asked, const tools::MercatorPyrami
   return json_response(json);
 }
 
-/// What make() gives; a refusal of the interval names it.
+/// The result of make(), whose refusal of an interval names the parameter.
 template <typename Make>
 auto with_interval(const Make& make) {
   try {

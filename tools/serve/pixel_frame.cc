@@ -22,9 +22,10 @@ namespace {
 
 using http::Problem;
 
-constexpr std::array<std::array<std::string_view, 6>, 2> kAxisNames = {
-    {{"lon", "long", "longitude", "e", "easting", "x"},
-     {"lat", "latitude", "n", "northing", "y", "y"}}};
+/// Names of the axis to the east, then those of the axis to the north.
+constexpr std::array<std::string_view, 11> kAxisNames = {
+    "lon", "long", "longitude", "e", "easting", "x", "lat", "latitude", "n", "northing", "y"};
+constexpr std::ptrdiff_t kNamesOfEast = 6;
 
 [[noreturn]] void refuse_axes(std::string_view parameter, std::string_view what) {
   throw Problem(400, std::string(what) +
@@ -78,12 +79,9 @@ std::optional<std::string_view> part_for_axis(std::string_view list, int axis,
       refuse_axes(parameter, "\"" + tools::shown(text) + "\" is no axis with its values");
     }
     const std::string name = tools::lower_case(std::string(ask::trimmed(text.substr(0, open))));
-    std::size_t which = 0;
-    while (which < 2 && std::find(kAxisNames[which].begin(), kAxisNames[which].end(), name) ==
-                            kAxisNames[which].end()) {
-      ++which;
-    }
-    if (which == 2 || parts[which]) {
+    const auto known = std::ranges::find(kAxisNames, name);
+    const std::size_t which = known - kAxisNames.begin() < kNamesOfEast ? 0 : 1;
+    if (known == kAxisNames.end() || parts[which]) {
       refuse_axes(parameter,
                   "the axis \"" + tools::shown(name) + "\" is not there, or comes twice");
     }

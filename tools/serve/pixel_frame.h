@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Where the pixels of a coverage stand, in the terrain's CRS or in another one.
+// The places of a coverage's pixels, in the terrain's CRS or in another one.
 #pragma once
 
 #include <array>
@@ -49,6 +49,7 @@ struct PixelCounts {
 /// @param places  Of the CRS of the frame and of `target`.
 /// @throws http::Problem 400  a pixel lies where the terrain's CRS has no positions
 ///         Error as tools::export_raster()
+/// Cost: of each pixel its transformation and what locate() costs. Memory: a block of pixels.
 [[nodiscard]] tools::WrittenRaster write_frame(const Asked& asked, const Places& places,
                                                const PixelFrame& frame,
                                                const LocateRequest& request,

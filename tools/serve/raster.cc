@@ -233,7 +233,7 @@ Places places_of_raster(const Asked& asked) {
           asked.request.share};
 }
 
-/// What no limit allows where the number has more than 64 bits.
+/// Pixels of a raster; where the number has more than 64 bits one that no limit allows.
 std::uint64_t pixel_count(std::int64_t columns, std::int64_t rows) {
   const double count = static_cast<double>(columns) * static_cast<double>(rows);
   return count < 1e18 ? static_cast<std::uint64_t>(columns * rows) : ~std::uint64_t{0} / 64;
@@ -263,7 +263,7 @@ Places places_of_window(const Asked& asked) {
           asked.request.share};
 }
 
-/// What a client's window and the terrain's box have in common, in the terrain's CRS.
+/// The part of a client's window that lies within the terrain's box, in the terrain's CRS.
 std::optional<Window> window_within_terrain(const Asked& asked, const RasterQuestion& question,
                                             const Places& places) {
   std::optional<Window> window = question.region.window;

@@ -57,7 +57,8 @@ const std::vector<SentFile>& sent_files() {
   static const std::vector<SentFile> all = [] {
     std::vector<SentFile> made;
     for (const tools::ViewerFile& file : tools::viewer_files()) {
-      made.push_back({file, http::etag_of(file.content), http::gzip(file.content)});
+      made.push_back({file, http::etag_of(file.content),
+                      http::gzip(file.content, http::GzipFor::kManyAnswers)});
     }
     return made;
   }();
@@ -103,7 +104,7 @@ Page page_of(const Asked& asked, const Collection& collection) {
   auto made = std::make_shared<SentPage>();
   made->content = tools::viewer_page_with(first_mesh_of(asked, collection));
   made->etag = http::etag_of(made->content);
-  made->packed = http::gzip(made->content);
+  made->packed = http::gzip(made->content, http::GzipFor::kManyAnswers);
   const std::lock_guard lock(mutex);
   if (pages.size() >= kMostPages) pages.clear();
   return pages.emplace(collection.fingerprint, std::move(made)).first->second;

@@ -33,7 +33,7 @@ struct GlobeBox {
   double north = 0.0;
 };
 
-/// The same box for formats that know none across the antimeridian: that one goes around the Earth.
+/// A box for formats that know none across the antimeridian: such a one goes around the Earth.
 [[nodiscard]] GlobeBox unwrapped(const GlobeBox& box) noexcept;
 /// Its middle, longitude from -180 to 180 and latitude, where west is above east across the antimeridian.
 [[nodiscard]] MapPoint middle_of(const GlobeBox& box) noexcept;

@@ -51,7 +51,7 @@ class MercatorPyramid {
   /// Where the terrain lies, degrees, within the latitudes of web maps; west is above east across the
   /// antimeridian.
   [[nodiscard]] GlobeBox bounds() const noexcept;
-  /// What TileJSON and PMTiles both tell of the tiles: `bounds`, which must not lie across the antimeridian
+  /// Facts that TileJSON and PMTiles both tell of the tiles: `bounds`, which must not lie across the antimeridian
   /// and go around the Earth where the terrain does, `center` (longitude, latitude, zoom), zooms, and
   /// `attribution` as HTML, which clients take it for.
   /// @param last_zoom  From 0 on.

@@ -58,7 +58,7 @@ bool write_png(png_structp png, png_infop info, int side, const std::uint8_t* pi
   // Heights of neighbours are alike: rows less the row above pack well, and one filter takes a third
   // of the time of all that libpng tries.
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_PAETH);
-  // What the filter leaves hardly repeats itself but in runs: to look for these alone packs as well or
+  // Bytes that the filter leaves hardly repeat themselves but in runs: to look for these alone packs as well or
   // better, in a third of the time.
   png_set_compression_level(png, 3);
   png_set_compression_strategy(png, Z_RLE);

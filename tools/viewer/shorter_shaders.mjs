@@ -8,5 +8,11 @@ const isShader = (text) => /\b(uniform|void main|gl_Position)\b/.test(text);
 const shorter = (text) => text.replace(/ *\/\/[^\n`]*/g, '').replace(/\n\s*/g, '\n')
   .replace(/ *([=+\-*/,;(){}<>?:|&]) */g, '$1').replace(/([;{},(])\n/g, '$1');
 
+// "a - -b" would become another shader.
+const checked = (text) => {
+  if (/--|\+\+/.test(text)) throw new Error(`two signs of a shader meet without blanks; write brackets: ${/.*(--|\+\+).*/.exec(text)[0]}`);
+  return text;
+};
+
 const [file] = process.argv.slice(2);
-writeFileSync(file, readFileSync(file, 'utf8').replace(/`[^`]*`/g, (text) => (isShader(text) ? shorter(text) : text)));
+writeFileSync(file, readFileSync(file, 'utf8').replace(/`[^`]*`/g, (text) => (isShader(text) ? checked(shorter(text)) : text)));

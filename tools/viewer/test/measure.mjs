@@ -86,7 +86,7 @@ async function firstSlowly(browser, address) {
 }
 
 /**
- * What pictures cost while the camera goes round, in some rounds: milliseconds from one to the next in the middle round and in the
+ * The cost of pictures while the camera goes round, in some rounds: milliseconds from one to the next in the middle round and in the
  * quickest, and of a processor, which other work on the machine changes little.
  */
 async function flying(browser, page) {
