@@ -16,7 +16,7 @@ struct ViewerFile {
   std::string_view content;  ///< Lives as long as the program.
 };
 
-/// index.html, viewer.css, boot.js, viewer.js, worker.js, decoder.wasm, questions.wasm.
+/// index.html, viewer.css, boot.js, viewer.js, shared.js, worker.js, ptin-terrain.js, decoder.wasm, questions.wasm.
 [[nodiscard]] std::span<const ViewerFile> viewer_files() noexcept;
 
 /// index.html, made to open a stream when its address names none.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The certificate of all that is in sight: certificates of streams hold in the windows that were asked for.
-import { type Certificate, type Decoder, boundsOf } from './decoder.js';
+import type { Decoder } from './decoder.js';
+import { type Certificate, boundsOf } from './facts.js';
 import { type StreamRequest, toldBy } from './metadata.js';
 import { type MapPosition, type Window, holds, windowAround } from './map_window.js';
 

@@ -44,7 +44,8 @@ export async function openBytes(bytes: Bytes, { signal, wasm }: OpenOptions = {}
 export { type ByteSource, type Bytes, GivenBytes, HostedBytes } from './byte_source.js';
 export { type Certified, type CertifiedPart, certifiedAt, certifiedOf, certifiedWithin } from './certified.js';
 export { type Collection, type StreamBody, collectionAt, streamOf } from './collection.js';
-export { type Certificate, Decoder, type Facts, boundsOf, heightOf, onMap } from './decoder.js';
+export { Decoder } from './decoder.js';
+export { type Certificate, type Facts, boundsOf, heightOf, onMap } from './facts.js';
 export { type ModuleSource, loadModule } from './load.js';
 export { type MapPosition, type Window, holds, widened, windowAround } from './map_window.js';
 export { type MeshView, none, triangleWords, vertexWords } from './mesh.js';

@@ -2,7 +2,7 @@
 //
 // A mesh as graphics want it: positions, normals, corners of the surface's triangles. Void triangles are left out, so voids stay
 // open.
-import { type Facts, heightOf } from './decoder.js';
+import { type Facts, heightOf } from './facts.js';
 import { type MeshView, triangleWords, vertexWords } from './mesh.js';
 
 /** A frame around a place of the terrain, in which 32 bits are enough: local = (map - origin) * scale. */

@@ -2,7 +2,8 @@
 //
 // A terrain that becomes finer while it arrives, whatever it comes from (stream_terrain.ts, served_terrain.ts).
 import { type Certified, certifiedWithin } from './certified.js';
-import { type Certificate, type Decoder, boundsOf, onMap } from './decoder.js';
+import type { Decoder } from './decoder.js';
+import { type Certificate, boundsOf, onMap } from './facts.js';
 import { type Window, widened } from './map_window.js';
 import { type Told, mapCrsOf, toldBy } from './metadata.js';
 import { type LocalFrame, localPositions, mapPositions, surfaceCorners } from './surface.js';

@@ -29,11 +29,14 @@ function trouble(title: string, message: string, aside = false): void {
   else say();
 }
 
+/** What is wrong where a script cannot be run. */
+const missing = 'or shared.js does not lie beside the page, or this browser is too old for them.';
+
 function begun(boot: Boot): Worker {
-  const worker = new Worker('worker.js');
+  const worker = new Worker('worker.js', { type: 'module' });
   worker.onmessage = (event) => { boot.early.push(event.data); };
   worker.onerror = () => {
-    boot.early.push({ kind: 'error', title: 'The viewer is not whole', message: 'worker.js does not lie beside the page.' });
+    boot.early.push({ kind: 'error', title: 'The viewer is not whole', message: `worker.js ${missing}` });
   };
   return worker;
 }
@@ -55,7 +58,7 @@ function start(): void {
     return;
   }
   const noModule = (): void => {
-    trouble('The viewer is not whole', 'viewer.js does not lie beside the page, or this browser is too old for it.');
+    trouble('The viewer is not whole', `viewer.js ${missing}`);
   };
   document.getElementById('module')!.addEventListener('error', noModule);
   if (!('noModule' in HTMLScriptElement.prototype)) noModule();

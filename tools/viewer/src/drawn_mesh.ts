@@ -2,7 +2,8 @@
 //
 // The mesh as the picture wants it: positions around the local origin, how each vertex is lit, corners of triangles by what they
 // are, the plinth's walls, and where triangles lie.
-import { heightOf, type MeshView, none, triangleWords, vertexWords } from 'ptin-decoder';
+import type { MeshView } from 'ptin-decoder';
+import { heightOf, none, triangleWords, vertexWords } from 'ptin-decoder/values';
 import type { Frame } from './frame';
 import { type Spread, SurfaceRaster } from './surface_raster';
 import { extentOf, gridOf, type TriangleGrid } from './triangle_grid';

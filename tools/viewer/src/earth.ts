@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The Earth below the terrain, as the engine tells it from what a stream says of its CRS.
-import { type Decoder, type MapPosition, onMap, type Told } from 'ptin-decoder';
+import type { Decoder, MapPosition, Told } from 'ptin-decoder';
+import { onMap } from 'ptin-decoder/values';
 import type { Lengths } from './answers';
 
 export interface Earth {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Parts of the viewer that come when they are needed.
-import { Problem } from 'ptin-decoder';
+import { Problem } from 'ptin-decoder/values';
 
 /** A module of the viewer, which lies beside the page. */
 export async function moduleAt(folder: string, name: string): Promise<WebAssembly.Module> {

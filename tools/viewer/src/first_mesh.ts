@@ -2,7 +2,8 @@
 //
 // The first picture that lies in the page (../first_mesh.h): a coarse mesh with its facts and its certificate, drawn before the
 // decoder is there.
-import { boundsOf, type Certified, type Facts, type MeshView, none, onMap, type Told, toldBy, triangleWords, vertexWords } from 'ptin-decoder';
+import type { Certified, Facts, MeshView, Told } from 'ptin-decoder';
+import { boundsOf, factNames, none, onMap, toldBy, triangleWords, vertexWords } from 'ptin-decoder/values';
 import type { Earth } from './earth';
 import { Frame } from './frame';
 
@@ -21,11 +22,6 @@ interface Written {
   triangles: number;
   mesh: string;
 }
-
-const factNames = [
-  'originX', 'originY', 'stepX', 'stepY', 'heightIsFloat', 'heightStep', 'heightOffset', 'minX', 'minY', 'maxX', 'maxY',
-  'minHeight', 'maxHeight', 'baseError', 'baseDeviation',
-] as const;
 
 /** @param text  The element's content. */
 export function firstMeshOf(text: string): FirstMesh {

@@ -3,7 +3,8 @@
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
 // middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
 // the whole terrain. Lengths that the page tells come from the engine.
-import { boundsOf, type Facts, onMap, type Units, type Window } from 'ptin-decoder';
+import type { Facts, Units, Window } from 'ptin-decoder';
+import { boundsOf, onMap } from 'ptin-decoder/values';
 import { type Earth, scaleAt } from './earth';
 
 export class Frame {

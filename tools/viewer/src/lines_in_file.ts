@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The line that a file of somebody's device holds: GPX, GeoJSON, or CSV.
-import { type MapPosition, Problem } from 'ptin-decoder';
+import type { MapPosition } from 'ptin-decoder';
+import { Problem } from 'ptin-decoder/values';
 
 export interface LineInFile {
   line: MapPosition[];

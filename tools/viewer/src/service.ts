@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The endpoints of `ptin serve` that the viewer asks. Nothing else of it knows their addresses or answers.
-import { type Collection, collectionAt, type MapPosition, opened, Problem, type StreamBody, streamOf, type Window } from 'ptin-decoder';
+import type { Collection, MapPosition, StreamBody, Window } from 'ptin-decoder';
+import { collectionAt, opened, Problem, streamOf } from 'ptin-decoder/values';
 import { count, number } from './format';
 import type { Frame } from './frame';
 import type { PointState, Profile, Sight, SightPoint } from './answers';

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where the camera stands, how it moves, the permalink's part, and the detail that its picture shows. It stays above the ground.
-import { type Wanted, type Window, windowAround } from 'ptin-decoder';
+import type { Wanted, Window } from 'ptin-decoder';
+import { windowAround } from 'ptin-decoder/values';
 import type { Frame } from './frame';
 import type { Projected } from './projected';
 import { type Camera, difference, lengthOf, sum, type Triple, turnedAround } from './space';

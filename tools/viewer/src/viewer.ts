@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import { type Certificate, certifiedAt, certifiedWithin, holds, type Problem } from 'ptin-decoder';
+import type { Certificate, Problem } from 'ptin-decoder';
+import { certifiedAt, certifiedWithin, holds } from 'ptin-decoder/values';
 import { Compass } from './compass';
 import { type DrawnMesh, drawnMesh, surfaceEnd } from './drawn_mesh';
 import { scaleAt } from './earth';

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Which triangles are water: a surface of triangles that are exactly horizontal, at height 0, or large and with higher ground around.
-import { type Facts, heightOf, type MeshView, none, triangleWords, vertexWords } from 'ptin-decoder';
+import type { Facts, MeshView } from 'ptin-decoder';
+import { heightOf, none, triangleWords, vertexWords } from 'ptin-decoder/values';
 
 export const land = 0, water = 1, isVoid = 2;
 

@@ -22,7 +22,7 @@ const marks = ['ptin-first-picture', 'ptin-settled'];
 const isService = (given) => /^http:\/\//.test(given);
 
 let packed = 0;
-for (const name of ['index.html', 'viewer.css', 'boot.js', 'viewer.js', 'worker.js', 'decoder.wasm', 'questions.wasm']) {
+for (const name of ['index.html', 'viewer.css', 'boot.js', 'viewer.js', 'shared.js', 'worker.js', 'decoder.wasm', 'questions.wasm']) {
   const bytes = readFileSync(join(assets, name));
   const small = gzipSync(bytes, { level: 9 }).length;
   if (name !== 'questions.wasm') packed += small;
