@@ -89,11 +89,10 @@ export class ServedView implements TerrainView {
   }
 
   async run(): Promise<void> {
-    const { bounds, heights } = this.collection;
-    const first: Wanted = { window: bounds, error: Math.max((heights[1] - heights[0]) / 50, 1e-6) };
+    const first: Wanted = { window: this.collection.bounds, error: Math.max(this.relief / 50, 1e-6) };
     while (!this.received.decoder.hasMesh) {
       await this.bring(first, firstBytes);
-      if (this.isTooMuch && first.error < heights[1] - heights[0]) first.error *= 2;
+      if (this.isTooMuch && first.error < this.relief) first.error *= 2;
     }
     for (;;) {
       const next = this.nextWanted();
@@ -130,7 +129,9 @@ export class ServedView implements TerrainView {
     const [west, south, east, north] = wanted.window;
     const there = certifiedAt(this.received.certified, [{ x: west, y: south }, { x: east, y: north }]);
     const finer = Math.max(leastFiner, Math.min(mostFiner, shareOfTime * computing / Math.max(1, this.lastTook)));
-    return there === null ? wanted : { window: wanted.window, error: Math.max(wanted.error, there.error / finer) };
+    // Before all borders of voids are there no error is finite: that of nothing is the relief.
+    const most = Math.min(there?.error ?? 0, this.relief);
+    return { window: wanted.window, error: Math.max(wanted.error, most / finer) };
   }
 
   private startAnew(): void {
@@ -138,10 +139,25 @@ export class ServedView implements TerrainView {
     this.isLean = true;
   }
 
-  /** Too much is held: without what is not looked at any more, or coarser when there is nothing else. */
-  private makeRoom(): void {
-    if (this.isLean) this.coarser *= 1.5;
+  /**
+   * Too much is held with what was asked last: without what is not looked at any more, or coarser when there is nothing else. What
+   * came stays where nothing can be: the borders of voids come first, at every error, and nothing is certified before.
+   */
+  private makeRoom(held: Received, { window, error }: Wanted): void {
+    const isUncertified = held.certified.every((part) => part.error === Infinity);
+    if (isUncertified || (this.isLean && error >= this.relief)) {
+      this.isTooMuch = true;
+      held.giveUp({ window: this.collection.bounds, error: 0 });
+      return;
+    }
+    const looked = this.wanted.find((w) => w.window === window)?.error ?? error;
+    if (this.isLean) this.coarser = 1.5 * Math.max(this.coarser, error / looked);
     this.startAnew();
+  }
+
+  private get relief(): number {
+    const [low, high] = this.collection.heights;
+    return high - low;
   }
 
   /** Asks for a part, once. A failure waits before the next attempt; what came before stays. */
@@ -163,7 +179,7 @@ export class ServedView implements TerrainView {
       if (error instanceof DecodeError) this.startAnew();
       await this.waitAfter(error);
     }
-    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > Math.min(this.mostVertices, this.mostHeld)) this.makeRoom();
+    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > Math.min(this.mostVertices, this.mostHeld)) this.makeRoom(to, wanted);
   }
 
   /** A service that is busy is waited for as it asks; of one that cannot be reached people are told. */
@@ -188,7 +204,7 @@ export class ServedView implements TerrainView {
     } else if (error.status !== 413) {
       return false;
     } else if (error.limit === 'have' || error.limit === 'held_vertices') {
-      this.makeRoom();
+      this.makeRoom(to, wanted);
     } else if (error.limit === 'most_stream_bytes' && this.mostBytes > leastBytes) {
       this.mostBytes /= 2;
     } else {
@@ -210,7 +226,7 @@ export class ServedView implements TerrainView {
     }
     const coarser = { window: wanted.window, error: 2 * wanted.error };
     to.giveUp(wanted);
-    if (!to.covers(coarser) && coarser.error < this.collection.heights[1] - this.collection.heights[0]) this.wanted.push(coarser);
+    if (!to.covers(coarser) && coarser.error < this.relief) this.wanted.push(coarser);
   }
 
   private async receive(to: Received, wanted: Wanted, mostBytes: number): Promise<void> {

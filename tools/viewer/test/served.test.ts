@@ -7,7 +7,7 @@ import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { Service } from '../src/service';
 import { ServedView } from '../src/served_view';
-import { decoderModule, file, ptin, terrain } from '../../decoder/test/support';
+import { decoderModule, file, gridded, ptin, terrain } from '../../decoder/test/support';
 
 interface Asked extends Wanted {
   have: Serving[];
@@ -18,10 +18,18 @@ const info = JSON.parse(ptin('info', store, '--json')) as { bounds: { min_x: num
 const bounds: Window = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
 const collection: Collection = { title: 'm', bounds, heights: [633, 1576] };
 
-/** A view of the terrain, and what was asked for it. `refuses` may throw before an answer. */
-function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number) => void = () => undefined): {
-  view: ServedView; asked: Asked[]; faults: unknown[]; settled: () => Promise<void>;
-} {
+/** What is served: a store, and the most splits of an answer. */
+interface Serves {
+  path: string;
+  collection: Collection;
+  mostSplits?: number;
+}
+
+/** A view of a terrain, and what was asked for it. `refuses` may throw before an answer. */
+function served(
+  mostVertices: number, refuses: (asked: Asked, mostBytes: number) => void = () => undefined,
+  { path, collection: about, mostSplits }: Serves = { path: store, collection },
+): { view: ServedView; asked: Asked[]; faults: unknown[]; settled: () => Promise<void> } {
   const asked: Asked[] = [];
   const faults: unknown[] = [];
   let wake: (() => void) | null = null;
@@ -31,12 +39,13 @@ function served(mostVertices: number, refuses: (asked: Asked, mostBytes: number)
       asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
       refuses(asked[asked.length - 1], max_bytes);
       const more = have.length === 0 ? [] : ['--have', JSON.stringify(have)];
-      ptin('stream', store, '--error', String(wanted.error), '--window', ...wanted.window.map(String), ...more,
+      const most = mostSplits === undefined ? [] : ['--splits', String(mostSplits)];
+      ptin('stream', path, '--error', String(wanted.error), '--window', ...wanted.window.map(String), ...more, ...most,
         '-o', file('served.ptins'), '--overwrite');
-      return new Response(readFileSync(file('served.ptins')), { headers: { 'Ptin-Fingerprint': 'f' } });
+      return new Response(readFileSync(file('served.ptins')), { headers: { 'Ptin-Fingerprint': 'f', 'Server-Timing': 'compute;dur=10' } });
     },
   };
-  const view = new ServedView(service as unknown as Service, collection, decoderModule(), mostVertices, {
+  const view = new ServedView(service as unknown as Service, about, decoderModule(), mostVertices, {
     grown: () => undefined, settled: () => { wake?.(); }, failed: (error) => { faults.push(error); }, mended: () => { faults.push('mended'); },
   });
   const settled = (): Promise<void> => new Promise((resolve) => { wake = resolve; });
@@ -159,4 +168,43 @@ test('refusals are mended: a replaced file begins anew, too much becomes less', 
   await settled();
   assert.equal(view.progress.heldBy, 'service');
   assert.deepEqual(faults, []);
+});
+
+/** A terrain with voids of a sample each, whose borders come in several answers: before no error is finite. */
+function holed(mostSplits: number): Serves {
+  const heights = Array.from({ length: 90 }, (_, row) => Array.from({ length: 90 }, (_, c) =>
+    (row % 3 === 1 && c % 3 === 1 ? '-9999' : (400 + 200 * Math.sin(c / 14) * Math.cos(row / 11)).toFixed(2))));
+  const { store: path } = gridded('holed', 'EPSG:32632', [400000, 5000000], 10, heights);
+  const around: Window = [400005, 5000005, 400895, 5000895];
+  return { path, collection: { title: 'h', bounds: around, heights: [200, 600], limits: { computing: 10000 } }, mostSplits };
+}
+
+test('of many voids all borders come, answer by answer, until an error is certified', async () => {
+  const serves = holed(400);
+  const { view, asked, faults, settled } = served(1e6, () => undefined, serves);
+  void view.run();
+  await settled();
+  assert.equal(view.decoder.certificate!.error, Infinity, 'the first answer certifies nothing');
+  view.setView([{ window: serves.collection.bounds, error: 5 }]);
+  await settled();
+  assert.ok(asked.length > 3);
+  assert.ok(asked.every((a) => Number.isFinite(a.error)), 'a service is asked for numbers');
+  assert.ok(view.decoder.certificate!.error <= 5);
+  assert.deepEqual(faults, []);
+});
+
+test('where the borders of voids alone are nearly too many, or are, there is an end of asking', async () => {
+  for (const [budget, mostSplits, isCertified] of [[500, 200, false], [1200, 600, true]] as const) {
+    const serves = holed(mostSplits);
+    const { view, asked, faults, settled } = served(budget, () => undefined, serves);
+    void view.run();
+    await settled();
+    view.setView([{ window: serves.collection.bounds, error: 5 }]);
+    await settled();
+    assert.equal(view.progress.state, 'held');
+    assert.equal(view.decoder.certificate!.error < Infinity, isCertified);
+    assert.equal(view.decoder.mesh.vertexCount <= budget, isCertified);
+    assert.ok(asked.length < 25, `${asked.length} requests`);
+    assert.deepEqual(faults, []);
+  }
 });
