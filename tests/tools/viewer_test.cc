@@ -3,6 +3,7 @@
 // ptin viewer: a folder that any web host can give out.
 #include <filesystem>
 #include <map>
+#include <span>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -122,6 +123,42 @@ TEST_F(ViewerCli, TheFirstPictureLiesInThePage) {
   write_file(file("bad.ptins"), bytes);
   expect_done({"viewer", "-o", file("bad"), "--stream", file("bad.ptins"), "-q"});
   EXPECT_EQ(read_file(file("bad/index.html")).find("first-mesh"), std::string::npos);
+}
+
+/// The JSON of an element of first_mesh_element().
+json written_in(const std::string& element) {
+  const std::size_t begin = element.find('>') + 1;
+  return json::parse(element.substr(begin, element.rfind('<') - begin));
+}
+
+TEST_F(ViewerCli, ABeginningThatCertifiesNothingMakesAPreviewThatSaysSo) {
+  // The borders of voids of one sample each come first, and no error is finite before.
+  std::string grid =
+      "ncols 97\nnrows 49\nxllcorner 400000\nyllcorner 5000000\ncellsize 10\n"
+      "NODATA_value -9999\n";
+  for (int row = 0; row < 49; ++row) {
+    for (int column = 0; column < 97; ++column) {
+      const bool is_void = row % 3 == 1 && column % 3 == 1;
+      grid += is_void ? "-9999 " : std::to_string(400 + row * row / 8 + column * row / 16) + " ";
+    }
+    grid += "\n";
+  }
+  write_file(file("holes.asc"), grid);
+  expect_done({"build", file("holes.asc"), "--a-srs", "EPSG:32632", "-o", file("h.ptin"), "-q"});
+  expect_done({"stream", file("h.ptin"), "-o", file("holes.ptins"), "-q"});
+  const std::string stream = read_file(file("holes.ptins"));
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(stream));
+  const std::string preview = first_mesh_element(bytes.first(2500));
+  EXPECT_TRUE(is_preview(preview));
+  const json first = written_in(preview);
+  EXPECT_TRUE(first.at("error").is_null());
+  EXPECT_TRUE(first.at("deviation").is_null());
+  EXPECT_EQ(first.at("vertices"), 33 * 17) << "a lattice of squares over the bounds";
+  EXPECT_EQ(first.at("triangles"), 2 * 32 * 16);
+  const std::string certified = first_mesh_element(bytes);
+  EXPECT_FALSE(is_preview(certified));
+  EXPECT_TRUE(written_in(certified).at("error").is_number());
+  EXPECT_TRUE(first_mesh_element(bytes.first(10)).empty()) << "of no mesh there is none";
 }
 
 TEST(ViewerPage, AnyNameIsAnAddressBesideThePage) {

@@ -122,7 +122,7 @@ WrittenFile copy_stream(const ViewerOptions& options, const std::string& name) {
 /// The first picture of the stream. A stream that cannot be read tells so when it is opened, with what
 /// of it came before the damage in sight; the page is written without a picture then.
 std::string first_mesh_of(const ViewerOptions& options) {
-  constexpr std::size_t kBeginning = std::size_t{128} << 10;
+  constexpr std::size_t kBeginning = std::size_t{1} << 20;
   std::ifstream in = open_to_copy(options.stream);
   std::vector<char> first(kBeginning);
   in.read(first.data(), static_cast<std::streamsize>(first.size()));

@@ -47,6 +47,8 @@ struct Sent {
 /// Of the first picture of a collection: some of the first splits, in few bytes. Their number is that
 /// of the vertices, nearly.
 constexpr std::uint64_t kFirstSplits = 1000, kFirstBytes = std::uint64_t{48} << 10;
+/// Where these certify nothing yet, as with many voids: so many that a preview can be made of them.
+constexpr std::uint64_t kPreviewSplits = 40'000, kPreviewBytes = std::uint64_t{1} << 20;
 /// Of the relief: its error, so that what is looked at for it is little of a large file.
 constexpr double kFirstSteps = 40;
 constexpr std::uint64_t kPageMemory = std::uint64_t{64} << 20;
@@ -70,7 +72,8 @@ using Page = std::shared_ptr<const SentPage>;
 
 /// The first picture, from a stream as a client asks for it. Empty where there is none: what is wrong with
 /// the file is told when the page asks for it.
-std::string first_mesh_of(const Asked& asked, const Collection& collection) {
+std::string first_mesh_of(const Asked& asked, const Collection& collection,
+                          std::uint64_t most_splits, std::uint64_t most_bytes) {
   const StoreFacts& facts = collection.terrain.store().facts();
   tools::Serving wanted;
   wanted.error = std::max((facts.max_height - facts.min_height) / kFirstSteps, 1e-6);
@@ -78,8 +81,8 @@ std::string first_mesh_of(const Asked& asked, const Collection& collection) {
   request.wanted = tools::predicate_of(wanted, facts, "window");
   request.tolerance = wanted.error;
   request.limits = {kPageMemory, asked.limits.stop};
-  request.most_splits = kFirstSplits;
-  request.most_bytes = kFirstBytes;
+  request.most_splits = most_splits;
+  request.most_bytes = most_bytes;
   request.metadata = tools::metadata_of_stream(collection.terrain.store(), wanted);
   std::vector<std::byte> stream;
   try {
@@ -102,7 +105,11 @@ Page page_of(const Asked& asked, const Collection& collection) {
     if (found != pages.end()) return found->second;
   }
   auto made = std::make_shared<SentPage>();
-  made->content = tools::viewer_page_with(first_mesh_of(asked, collection));
+  std::string first = first_mesh_of(asked, collection, kFirstSplits, kFirstBytes);
+  if (first.empty() || tools::is_preview(first)) {
+    first = first_mesh_of(asked, collection, kPreviewSplits, kPreviewBytes);
+  }
+  made->content = tools::viewer_page_with(first);
   made->etag = http::etag_of(made->content);
   made->packed = http::gzip(made->content, http::GzipFor::kManyAnswers);
   const std::lock_guard lock(mutex);

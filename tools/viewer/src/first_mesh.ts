@@ -8,6 +8,8 @@ import type { Earth } from './earth';
 import { Frame } from './frame';
 
 export interface FirstMesh {
+  /** Heights of some places alone. */
+  isPreview: boolean;
   frame: Frame;
   mesh: MeshView;
   certified: Certified;
@@ -16,7 +18,8 @@ export interface FirstMesh {
 interface Written {
   facts: number[];
   metadata: string;
-  error: number;
+  /** Null of a preview, of which nothing is certified. */
+  error: number | null;
   deviation: number;
   vertices: number;
   triangles: number;
@@ -28,11 +31,12 @@ export function firstMeshOf(text: string): FirstMesh {
   const written = JSON.parse(text) as Written;
   const facts = Object.fromEntries(factNames.map((name, i) => [name, written.facts[i]])) as Facts;
   const told = toldBy(JSON.parse(written.metadata));
+  const { error, deviation } = written;
   return {
+    isPreview: error === null,
     frame: new Frame(facts, told.units, roughEarth(facts, told)),
     mesh: meshOf(written),
-    certified: told.request.levels !== undefined ? []
-      : [{ window: told.request.window ?? boundsOf(facts), error: written.error, deviation: written.deviation }],
+    certified: error === null || told.request.levels !== undefined ? [] : [{ window: told.request.window ?? boundsOf(facts), error, deviation }],
   };
 }
 

@@ -95,6 +95,8 @@ export interface Status extends Progress {
   triangles: number;
   splits: number;
   splitsInAll: number;
+  /** The mesh is none of the terrain's but heights of some places, joined: nothing of it is certified. */
+  isPreview?: boolean;
   /** The certificates of the mesh that was handed over last. */
   certified: Certified;
 }

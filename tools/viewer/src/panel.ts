@@ -12,11 +12,14 @@ import type { Shading } from './relief';
 
 /** Errors that the slider tells apart: from a quarter of the relief down by this factor, then none. */
 const errorSpan = 1e4;
+const previewNote = 'a preview, not certified';
 
 export class Panel {
   private frame: Frame | null = null;
   private timer = 0;
   private coloured: readonly [low: number, high: number] | null = null;
+  private attribution = '';
+  private isPreview = false;
 
   /** @param changed is told which settings the user changed; errors only once the slider rests. */
   constructor(readonly settings: Settings, private readonly changed: (key: keyof Settings) => void) {
@@ -46,11 +49,17 @@ export class Panel {
   /** @param attribution  Whom to name; empty: nobody told. */
   setFrame(frame: Frame, name: string, subtitle: string, attribution: string): void {
     this.frame = frame;
-    part('attribution').textContent = attribution;
+    this.attribution = attribution;
+    this.showCredit();
     part('title').textContent = name;
     document.title = name;
     part('subtitle').textContent = subtitle;
     this.show();
+  }
+
+  /** At the lower edge: whom to name. Of a preview also that it is one, where there is no card, and in pictures that are saved. */
+  private showCredit(): void {
+    part('attribution').textContent = [this.attribution, this.isPreview ? previewNote : ''].filter(Boolean).join(' \u00b7 ');
   }
 
   /** The heights at both ends of the colours. */
@@ -82,6 +91,8 @@ export class Panel {
   showStatus(status: Status, certificate: Certificate | null, everywhere: boolean): void {
     const { sign } = this;
     const isExact = certificate?.error === 0 && certificate.deviation === 0;
+    this.isPreview = status.isPreview === true;
+    this.showCredit();
     part('certified').textContent = isExact ? 'Exact' : certificate === null ? '\u2013' : `\u00b1${bound(certificate.error)} ${sign}`;
     const where = everywhere ? 'at every sample' : 'at every sample in sight';
     // Clicks tell the same: what a mesh is off between the samples, where there is no other bound.
@@ -90,7 +101,7 @@ export class Panel {
     const whole = certificate === null ? 'not certified in all that is in sight' : `certified ${where}${between}`;
     const waits = status.waitsFor === undefined ? 'still refining' : `waiting: ${status.waitsFor}`;
     part('certified-what').textContent = {
-      loading: isExact ? waits : `${whole}, and ${waits}`,
+      loading: this.isPreview ? `${previewNote}; the terrain is on its way` : isExact ? waits : `${whole}, and ${waits}`,
       complete: isExact ? 'every sample is met' : whole,
       held: status.heldBy === 'error' ? whole + (certificate === null ? '' : ', as asked for')
         : `${whole}; more would be too much for this ${status.heldBy === 'service' ? 'service' : 'device'}`,

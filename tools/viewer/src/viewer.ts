@@ -51,7 +51,6 @@ class Viewer {
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
-  private attribution = '';
   /** With which the page was opened. */
   private readonly linkPose = fromHash(location.hash).pose;
   /** What the link asks, until it is asked: the address soon tells of the page as it is. */
@@ -107,7 +106,7 @@ class Viewer {
     }); });
   }
 
-  private drawFirst({ frame, mesh, certified }: FirstMesh): void {
+  private drawFirst({ isPreview, frame, mesh, certified }: FirstMesh): void {
     const { vertexCount: vertices, triangleCount: triangles } = mesh;
     this.frame = frame;
     this.relief.setFrame(frame);
@@ -115,7 +114,7 @@ class Viewer {
     this.poseOfLink();
     this.take({
       kind: 'mesh', mesh: drawnMesh(mesh, frame),
-      status: { vertices, triangles, splits: 0, splitsInAll: 0, certified, bytes: 0, bytesInAll: 0, state: 'loading' },
+      status: { vertices, triangles, isPreview, splits: 0, splitsInAll: 0, certified, bytes: 0, bytesInAll: 0, state: 'loading' },
     });
     this.firstVertices = vertices;
     this.moved();
@@ -153,7 +152,7 @@ class Viewer {
     switch (message.kind) {
       case 'terrain': this.introduce(message); break;
       case 'mesh':
-        if (message.status.vertices < this.firstVertices && message.status.state === 'loading') break;
+        if (this.keepsFirst(message.status)) break;
         this.firstVertices = 0;
         this.relief.setMesh(message.mesh);
         this.overlay.setMesh({ ...message.mesh, corners: message.mesh.corners.subarray(0, surfaceEnd(message.mesh.parts)) });
@@ -176,6 +175,12 @@ class Viewer {
     }
   }
 
+  /** Whether the picture that lay in the page tells more than what came: a preview does until something is certified. */
+  private keepsFirst({ vertices, state, certified }: Status): boolean {
+    if (state !== 'loading') return false;
+    return this.status?.isPreview === true ? !certified.some((part) => part.error < Infinity) : vertices < this.firstVertices;
+  }
+
   private introduce(message: Extract<FromWorker, { kind: 'terrain' }>): void {
     const { facts, units, earth, about } = message;
     const frame = this.frame = new Frame(facts, units, earth);
@@ -185,7 +190,6 @@ class Viewer {
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
     part('scale').hidden = earth.lengths.metres === null;
     this.panel.setFrame(frame, message.name, `${size}${about.crs === '' ? '' : ` \u00b7 ${about.crs}`}${unknown}`, about.attribution);
-    this.attribution = about.attribution;
     if (this.firstVertices > 0) {
       this.view.replaceFrame(frame);
     } else {
@@ -224,9 +228,12 @@ class Viewer {
   private show(status: Status): void {
     this.status = { ...status, certificate: this.inSight(status) };
     this.showCertificate();
-    if (status.state !== this.spokenState && status.state !== 'loading') {
+    const what = part('certified-what').textContent ?? '';
+    if (status.isPreview === true) {
+      speak(what);
+    } else if (status.state !== this.spokenState && status.state !== 'loading') {
       performance.mark('ptin-settled');
-      speak(`${part('certified').textContent}, ${part('certified-what').textContent}, ${bytes(status.bytes)} received`);
+      speak(`${part('certified').textContent}, ${what}, ${bytes(status.bytes)} received`);
     }
     this.spokenState = status.state;
   }
@@ -410,7 +417,7 @@ class Viewer {
     requestAnimationFrame(() => {
       const scale = part('scale');
       savePicture(canvas, {
-        title: part('title').textContent ?? '', attribution: this.attribution, labels,
+        title: part('title').textContent ?? '', attribution: part('attribution').textContent ?? '', labels,
         scale: scale.hidden ? null : { width: scale.querySelector('i')!.clientWidth, text: scale.querySelector('span')!.textContent ?? '' },
       });
     });

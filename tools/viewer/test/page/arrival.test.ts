@@ -2,11 +2,12 @@
 //
 // The page while a terrain arrives, what it says where none comes, and where it is opened from.
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
+import type { Page } from 'playwright-core';
 import { host } from '../../../decoder/test/host.mjs';
-import { file, ptin } from '../../../decoder/test/support';
+import { file, gridded, ptin } from '../../../decoder/test/support';
 import { appears, colours, complete, counted, fast, layOut, onPage, portioned, rested, site, store, text, until } from './browser';
 
 test('the page shows the terrain while it arrives, and then rests', () => onPage(portioned.url, async (page) => {
@@ -96,29 +97,117 @@ test('from a folder the page says that it needs a host', () => onPage(`file://${
   assert.doesNotMatch(await text(page, '#subtitle'), /Loading/);
 }, { mayComplain: true }));
 
-test('a first picture lies in the page: it is there before the decoder is asked for', async () => {
+interface Held {
+  page: Page;
+  /** Lets the decoder come. */
+  release(): void;
+  /** Lets the next portion of the stream come. */
+  more(): void;
+}
+
+/** A page of a site whose decoder waits until it is released, once its first picture is there. */
+async function heldBack(folder: string, use: (held: Held) => Promise<void>, { portions = 1, query = '' } = {}): Promise<void> {
   let release: () => void = () => undefined;
   const held = new Promise<void>((resolve) => { release = resolve; });
   let asked = 0;
-  const server = await host(site, { answer: (_, response, path) => {
+  const server = await host(folder, { portions, answer: (_, response, path) => {
     if (!path.endsWith('/decoder.wasm') || asked++ > 0) return false;
     void held.then(() => {
-      response.writeHead(200, { 'Content-Type': 'application/wasm' }).end(readFileSync(join(site, 'decoder.wasm')));
+      response.writeHead(200, { 'Content-Type': 'application/wasm' }).end(readFileSync(join(folder, 'decoder.wasm')));
     });
     return true;
   } });
-  await onPage(server.url, async (page) => {
-    await until(page, () => performance.getEntriesByName('ptin-first-picture').length > 0);
-    await rested(page);
-    assert.ok(await counted(page, '#fact-vertices') < 5000);
-    assert.match(await text(page, '#certified'), /^\u00b1[\d.\u202f]+/, 'with its certificate');
-    assert.ok(await colours(page) > 200, 'the picture is not blank');
-    const before = await page.evaluate(() => window.ptinViewer.view.current);
+  try {
+    await onPage(server.url + query, async (page) => {
+      await until(page, () => performance.getEntriesByName('ptin-first-picture').length > 0);
+      await rested(page);
+      await use({ page, release, more: server.more });
+    });
+  } finally {
     release();
-    await complete(page);
-    assert.equal(await text(page, '#certified'), 'Exact');
-    const after = await page.evaluate(() => window.ptinViewer.view.current);
-    assert.ok(Math.abs(after.distance - before.distance) < 1e-6 * before.distance, 'the camera stays');
+    await server.close();
+  }
+}
+
+test('a first picture lies in the page: it is there before the decoder is asked for', () => heldBack(site, async ({ page, release }) => {
+  assert.ok(await counted(page, '#fact-vertices') < 5000);
+  assert.match(await text(page, '#certified'), /^\u00b1[\d.\u202f]+/, 'with its certificate');
+  assert.ok(await colours(page) > 200, 'the picture is not blank');
+  const before = await page.evaluate(() => window.ptinViewer.view.current);
+  release();
+  await complete(page);
+  assert.equal(await text(page, '#certified'), 'Exact');
+  const after = await page.evaluate(() => window.ptinViewer.view.current);
+  assert.ok(Math.abs(after.distance - before.distance) < 1e-6 * before.distance, 'the camera stays');
+}));
+
+/** The words that a picture has when it is saved. */
+async function wordsSaved(page: Page): Promise<string> {
+  await page.evaluate(() => {
+    const words: string[] = [];
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (this: CanvasRenderingContext2D, word: string, x: number, y: number): void {
+      words.push(word);
+      fillText.call(this, word, x, y);
+    };
+    Object.assign(window, { words });
   });
-  await server.close();
-});
+  await Promise.all([page.waitForEvent('download'), page.keyboard.press('e')]);
+  return page.evaluate(() => (window as unknown as { words: string[] }).words.join('\n'));
+}
+
+/** What the page says of a preview wherever it says something of the terrain. */
+async function isCalledPreview(page: Page): Promise<void> {
+  assert.equal(await counted(page, '#fact-vertices'), 33 * 33);
+  assert.equal(await text(page, '#certified'), '\u2013');
+  for (const part of ['#certified-what', '#credit']) assert.match(await text(page, part), /preview, not certified/, part);
+}
+
+// The borders of all these voids come first, until when no error is finite.
+const size = 330;
+const heightOfHoles = (column: number, row: number): number => 400 + 200 * Math.sin(column / 28) * Math.cos(row / 22);
+function holes(): string {
+  const folder = file('preview');
+  if (existsSync(folder)) return folder;
+  const heights = Array.from({ length: size }, (_, row) => Array.from({ length: size }, (_, c) =>
+    (row % 3 === 1 && c % 3 === 1 && c < 245 ? '-9999' : heightOfHoles(c, row).toFixed(2))));
+  const { stream } = gridded('holes', 'EPSG:32632', [400000, 5000000], 10, heights, '--error', '20');
+  layOut(folder, '--stream', stream);
+  return folder;
+}
+
+test('of a terrain that certifies nothing for long a preview lies in the page, and certifies nothing', () => heldBack(holes(), async ({ page, release, more }) => {
+  await isCalledPreview(page);
+  assert.match(await text(page, '#spoken'), /preview, not certified/);
+  assert.ok(await colours(page) > 200, 'the picture is not blank');
+  for (const [column, row] of [[260, 50], [277, 133], [320, 301]] as const) {
+    const there = await page.evaluate(([x, y]) => {
+      const { frame, relief } = window.ptinViewer;
+      return frame.heightAt(relief.groundAt(frame.sceneX(x), frame.sceneY(y)) ?? NaN);
+    }, [400005 + 10 * column, 5000005 + 10 * (size - 1 - row)]);
+    assert.ok(Math.abs(there - heightOfHoles(column, row)) < 60, `${there} for ${heightOfHoles(column, row)}`);
+  }
+  assert.match(await wordsSaved(page), /preview, not certified/);
+  await page.mouse.move(880, 600);
+  await until(page, () => /^about /.test(document.getElementById('place')!.textContent!));
+  // Of the stream there is more than of the preview now, and still nothing certified.
+  release();
+  await until(page, () => document.title !== 'Terrain');
+  await page.mouse.click(880, 600);
+  await appears(page, '#answer');
+  assert.match(await text(page, '#answer-text') + await text(page, '#answer-note'), /certainly between/);
+  await isCalledPreview(page);
+  for (let i = 0; i < 8; ++i) more();
+  await complete(page);
+  assert.match(await text(page, '#certified'), /^\u00b1[\d.\u202f]+/, 'then the terrain takes its place');
+  assert.ok(await counted(page, '#fact-vertices') > 6000);
+  for (const part of ['#certified-what', '#spoken', '#credit']) assert.doesNotMatch(await page.locator(part).textContent() ?? '', /preview/);
+  assert.doesNotMatch(await wordsSaved(page), /preview/);
+}, { portions: 8 }));
+
+test('in a frame, where there is no card, a preview is called so, too', () => heldBack(holes(), async ({ page, release }) => {
+  assert.match(await text(page, '#credit'), /preview, not certified/);
+  release();
+  await complete(page);
+  assert.doesNotMatch(await text(page, '#credit'), /preview/);
+}, { query: '?embed=1' }));
