@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // <ptin-terrain>: a terrain in any page, from this one file. It is the viewer in a frame, without its card.
-//   <script type="module" src="https://host/viewer/ptin-terrain.js"></script>
+//   <script src="https://host/viewer/ptin-terrain.js"></script>
 //   <ptin-terrain src="https://host/collections/ID"></ptin-terrain>
 // `src`: a terrain of a service, or a stream. `view`: what stands behind # in a link. `viewer`: the folder of index.html, where it is
 // not that of this file.
@@ -14,9 +14,10 @@ export function addressOf(src: string, view: string, viewer: string, page: strin
   return `${new URL('index.html', viewer).href}?${new URLSearchParams({ ...query, embed: '1' })}${view === '' ? '' : `#${view.replace(/^#/, '')}`}`;
 }
 
-const here = import.meta.url;
-
 if (typeof HTMLElement !== 'undefined') {
+  // A script of no module: one may be had from a host that says nothing of other origins. As a module it is found by its name.
+  const script = document.currentScript ?? document.querySelector('script[src*="ptin-terrain"]');
+  const here = (script as HTMLScriptElement | null)?.src ?? document.baseURI;
   customElements.define('ptin-terrain', class extends HTMLElement {
     static readonly observedAttributes = ['src', 'view', 'viewer'];
     private readonly shown = document.createElement('iframe');

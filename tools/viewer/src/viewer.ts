@@ -332,7 +332,12 @@ class Viewer {
       this.boot.trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
     });
     addEventListener('hashchange', () => {
-      const { pose } = fromHash(location.hash);
+      const { pose, settings } = fromHash(location.hash);
+      const { panel } = this;
+      // An exaggeration that no link names stays as it was found.
+      for (const key of Object.keys(settings) as Array<keyof Settings>) {
+        if (settings[key] !== panel.settings[key] && (key !== 'exaggeration' || settings[key] > 0)) panel.set(key, settings[key]);
+      }
       if (pose !== null) this.view.pose(pose);
       this.moved();
     });
