@@ -80,9 +80,11 @@ export class Panel {
       return;
     }
     const { where, height, slack } = place;
+    // Of a height that nobody vouches for no digits are told that it may not have.
+    const step = roundBelow(this.relief / 100);
     const told = document.createElement('b');
     told.textContent = height === null ? 'No terrain here'
-      : slack === null ? `about ${heightText(height, this.relief / 100, this.sign)}`
+      : slack === null ? `about ${heightText(Math.round(height / step) * step, 10 * step, this.sign)}`
       : heightText(height, slack, this.sign) + (slack > 0 ? ` \u00b1 ${bound(slack, 2)} ${this.sign}` : '');
     part('place').replaceChildren(told, where);
   }

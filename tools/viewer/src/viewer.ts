@@ -111,6 +111,8 @@ class Viewer {
     this.frame = frame;
     this.relief.setFrame(frame);
     this.view.setFrame(frame);
+    // Its unit and its relief; what it is called comes later.
+    this.panel.setFrame(frame, document.title, part('subtitle').textContent ?? '', '');
     this.poseOfLink();
     this.take({
       kind: 'mesh', mesh: drawnMesh(mesh, frame),

@@ -132,6 +132,7 @@ async function heldBack(folder: string, use: (held: Held) => Promise<void>, { po
 test('a first picture lies in the page: it is there before the decoder is asked for', () => heldBack(site, async ({ page, release }) => {
   assert.ok(await counted(page, '#fact-vertices') < 5000);
   assert.match(await text(page, '#certified'), /^\u00b1[\d.\u202f]+/, 'with its certificate');
+  assert.match(await text(page, '#legend-high'), /^1\d{3} m$/, 'and its legend');
   assert.ok(await colours(page) > 200, 'the picture is not blank');
   const before = await page.evaluate(() => window.ptinViewer.view.current);
   release();
@@ -189,7 +190,7 @@ test('of a terrain that certifies nothing for long a preview lies in the page, a
   }
   assert.match(await wordsSaved(page), /preview, not certified/);
   await page.mouse.move(880, 600);
-  await until(page, () => /^about /.test(document.getElementById('place')!.textContent!));
+  await until(page, () => /^about \d+[02468] m/.test(document.getElementById('place')!.textContent!));
   // Of the stream there is more than of the preview now, and still nothing certified.
   release();
   await until(page, () => document.title !== 'Terrain');
