@@ -38,6 +38,14 @@ Json link(const std::string& href, const char* rel, std::string_view type, const
 }
 
 /// What this service knows of a terrain beyond what OGC asks for.
+/// For clients that turn places into degrees themselves.
+Json lon_lat_json(const std::optional<LonLatNodes>& of) {
+  if (!of) return nullptr;
+  Json nodes = Json::array();
+  for (const MapPoint& p : of->nodes) nodes.push_back({p.x, p.y});
+  return {{"nodes", std::move(nodes)}, {"within", of->within}};
+}
+
 Json terrain_json(const Collection& c) {
   const StoreFacts& facts = c.terrain.store().facts();
   return {{"bounds", {c.bounds.min_x, c.bounds.min_y, c.bounds.max_x, c.bounds.max_y}},
@@ -48,6 +56,7 @@ Json terrain_json(const Collection& c) {
           {"vertical_crs", c.crs.has_third_axis ? c.crs.vertical_name : c.crs.vertical_text()},
           {"units", {{"horizontal", c.crs.horizontal_unit}, {"height", c.crs.vertical_unit}}},
           {"geographic", c.crs.geographic},
+          {"lon_lat", lon_lat_json(c.lon_lat_within)},
           {"free_of_voids", facts.free_of_voids},
           {"fingerprint", c.fingerprint},
           {"bytes", c.terrain.store().file_bytes()}};

@@ -16,6 +16,17 @@ export interface Collection {
   limits?: Readonly<Record<string, number>>;
   /** The least and the greatest of the samples. */
   heights: readonly [number, number];
+  /** Of a projected CRS; null where its service does not tell. */
+  lonLat?: LonLatNodes | null;
+}
+
+/**
+ * Longitudes and latitudes at the thirds of `bounds`, from the least x and y, row by row along x; between them the polynomial through
+ * the four of each row, then through the four rows, is off by `within` degrees at most. Longitudes may be beyond 180.
+ */
+export interface LonLatNodes {
+  nodes: ReadonlyArray<readonly [lon: number, lat: number]>;
+  within: number;
 }
 
 /** What POST .../stream takes. */
@@ -32,14 +43,14 @@ export async function collectionAt(address: string, signal?: AbortSignal): Promi
   const json = await response.json().catch(() => {
     signal?.throwIfAborted();
     throw new Problem('This is no terrain service', `What answered at ${address} is not JSON.`, response.status);
-  }) as { title?: unknown; attribution?: unknown; limits?: Record<string, number>; terrain?: Partial<Collection> } | null;
+  }) as { title?: unknown; attribution?: unknown; limits?: Record<string, number>; terrain?: Partial<Collection> & { lon_lat?: LonLatNodes | null } } | null;
   const terrain = json?.terrain;
   if (terrain?.bounds === undefined || terrain.heights === undefined) {
     throw new Problem('This is no terrain service', `What answered at ${address} does not describe a terrain.`, response.status);
   }
   return {
     title: String(json?.title ?? address.split('/').pop()), attribution: textOf(json?.attribution), bounds: terrain.bounds,
-    heights: terrain.heights, limits: json?.limits ?? {},
+    heights: terrain.heights, limits: json?.limits ?? {}, lonLat: terrain.lon_lat ?? null,
   };
 }
 

@@ -16,6 +16,7 @@ import type { TerrainView, ViewEvents } from './terrain_view';
 export class FileView implements TerrainView {
   /** The stream itself tells whom to name. */
   readonly attribution = '';
+  readonly lonLat = null;
   private readonly still: StaticStream;
   private bytesInAll = 0;
   /** Nothing more comes. */

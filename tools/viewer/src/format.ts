@@ -74,9 +74,9 @@ export function interval(least: number, most: number, sign: string): [string, st
 }
 
 /** A place of the map, with as many decimals as its unit deserves. */
-export function coordinates(x: number, y: number, isDegrees: boolean): string {
+export function coordinates(x: number, y: number, isDegrees: boolean, places = 5): string {
   if (!isDegrees) return `${count(x)} E  ${count(y)} N`.replace(/-/g, '\u2212');
-  return `${Math.abs(y).toFixed(5)}° ${y < 0 ? 'S' : 'N'}  ${Math.abs(x).toFixed(5)}° ${x < 0 ? 'W' : 'E'}`;
+  return `${Math.abs(y).toFixed(places)}° ${y < 0 ? 'S' : 'N'}  ${Math.abs(x).toFixed(places)}° ${x < 0 ? 'W' : 'E'}`;
 }
 
 /** The largest of 1, 2, 5 times a power of ten that is at most `value`. */

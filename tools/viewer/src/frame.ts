@@ -3,9 +3,10 @@
 // Where things are: on the grid (whole numbers, exact), on the map (the file's CRS), and in the scene: metres around the
 // middle of the terrain, so that 32 bits of a GPU are enough anywhere on Earth. The scene is for pictures: it has one scale for
 // the whole terrain. Lengths that the page tells come from the engine.
-import type { Facts, Units, Window } from 'ptin-decoder';
+import type { Facts, LonLatNodes, MapPosition, Units, Window } from 'ptin-decoder';
 import { boundsOf, onMap } from 'ptin-decoder/values';
 import { type Earth, scaleAt } from './earth';
+import { coordinates } from './format';
 
 export class Frame {
   /** The middle of the terrain, on the map. */
@@ -19,7 +20,8 @@ export class Frame {
   readonly baseHeight: number;
   readonly isDegrees: boolean;
 
-  constructor(readonly facts: Facts, readonly units: Units, readonly earth: Earth) {
+  /** @param lonLat  Degrees over a terrain that has none itself, for people. */
+  constructor(readonly facts: Facts, readonly units: Units, readonly earth: Earth, private readonly lonLat: LonLatNodes | null = null) {
     const f = facts;
     ({ x: this.middleX, y: this.middleY } = onMap(f, (f.minX + f.maxX) / 2, (f.minY + f.maxY) / 2));
     this.isDegrees = earth.isDegrees;
@@ -39,10 +41,32 @@ export class Frame {
   get depth(): number { return (this.facts.maxY - this.facts.minY) * this.facts.stepY * this.scaleY; }
   get relief(): number { return Math.max(0, this.facts.maxHeight - this.facts.minHeight) * this.scaleZ; }
 
+  /** A place for people: in the terrain's CRS, and in degrees where they are told. */
+  where({ x, y }: MapPosition): string {
+    const place = coordinates(x, y, this.isDegrees);
+    const { lonLat, bounds: [west, south, east, north] } = this;
+    if (lonLat === null || !(east > west && north > south)) return place;
+    const across = sharesOfNodes((x - west) / (east - west)), up = sharesOfNodes((y - south) / (north - south));
+    let lon = 0, lat = 0;
+    lonLat.nodes.forEach((node, i) => {
+      const share = across[i % 4] * up[i >> 2];
+      lon += share * node[0];
+      lat += share * node[1];
+    });
+    const places = Math.min(5, Math.floor(-Math.log10(2 * lonLat.within)));
+    return `${place}\n${coordinates(lon - 360 * Math.round(lon / 360), lat, true, places)}`;
+  }
+
   sceneX(mapX: number): number { return (mapX - this.middleX) * this.scaleX; }
   sceneY(mapY: number): number { return (mapY - this.middleY) * this.scaleY; }
   sceneZ(height: number): number { return (height - this.baseHeight) * this.scaleZ; }
   mapX(sceneX: number): number { return this.middleX + sceneX / this.scaleX; }
   mapY(sceneY: number): number { return this.middleY + sceneY / this.scaleY; }
   heightAt(sceneZ: number): number { return this.baseHeight + sceneZ / this.scaleZ; }
+}
+
+/** What each of four nodes counts at a share of the way from the first to the last. */
+function sharesOfNodes(at: number): number[] {
+  const t = 3 * at;
+  return [(1 - t) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, t * (1 - t) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6];
 }

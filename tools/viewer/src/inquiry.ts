@@ -294,7 +294,7 @@ export class Inquiry {
   private showHeight(answer: AnswerOf<'height'>, frame: Frame): void {
     const { located, certainty, at } = answer;
     const sign = signOf(frame.units.height);
-    const where = coordinates(at.x, at.y, frame.isDegrees);
+    const where = frame.where(at);
     const { height, least, most } = located;
     this.tell({ x: at.x, y: at.y, height, least, most, error: certainty.error, deviation: certainty.deviation });
     if (located.state !== 'surface' || height === null) {

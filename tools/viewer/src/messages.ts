@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the page and its Worker say to each other.
-import type { Certified, Facts, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
+import type { Certified, Facts, LonLatNodes, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
 import type { Located, Profile, Sight, SightRequest } from './answers';
 import type { DrawnMesh } from './drawn_mesh';
 import type { Earth } from './earth';
@@ -106,6 +106,8 @@ export interface About {
   attribution: string;
   /** The name of the CRS of its positions. */
   crs: string;
+  /** Null: not told. */
+  lonLat: LonLatNodes | null;
 }
 
 export type FromWorker =

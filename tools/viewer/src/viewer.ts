@@ -7,7 +7,7 @@ import { Compass } from './compass';
 import { type DrawnMesh, drawnMesh, surfaceEnd } from './drawn_mesh';
 import { scaleAt } from './earth';
 import { type FirstMesh, firstMeshOf } from './first_mesh';
-import { bytes, coordinates, metres, roundBelow, rounded } from './format';
+import { bytes, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
 import { Gestures } from './gestures';
 import { Inquiry } from './inquiry';
@@ -185,7 +185,7 @@ class Viewer {
 
   private introduce(message: Extract<FromWorker, { kind: 'terrain' }>): void {
     const { facts, units, earth, about } = message;
-    const frame = this.frame = new Frame(facts, units, earth);
+    const frame = this.frame = new Frame(facts, units, earth, about.lonLat);
     this.relief.setFrame(frame);
     const size = earth.size === null ? 'size not known' : `${metres(earth.size[0])} \u00d7 ${metres(earth.size[1])}`;
     const unknown = units.height !== 'unknown' ? ''
@@ -398,7 +398,7 @@ class Viewer {
     const at = { x: frame.mapX(place.x), y: frame.mapY(place.y) };
     const certificate = certifiedAt(status.certified, [at]);
     this.panel.showPlace({
-      where: coordinates(at.x, at.y, frame.isDegrees), height: frame.heightAt(place.z), slack: certificate?.deviation ?? null,
+      where: frame.where(at), height: frame.heightAt(place.z), slack: certificate?.deviation ?? null,
     });
   }
 

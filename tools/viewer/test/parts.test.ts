@@ -127,6 +127,31 @@ test('the picture has the scale of its middle parallel, and feet are feet', () =
   assert.deepEqual(frame.bounds, [10, 59, 11, 61]);
 });
 
+test('a place of a projected terrain is told in degrees, too, with the decimals that are certain', () => {
+  // Web Mercator from 179 to 181 degrees east.
+  const radius = 6378137, degree = Math.PI / 180, west = 179 * degree * radius, south = 5e6, aside = 2 * degree * radius;
+  const latitude = (y: number): number => Math.atan(Math.sinh(y / radius)) / degree;
+  const facts = {
+    originX: west, originY: south, stepX: aside / 100, stepY: 2000, heightIsFloat: 0, heightStep: 1, heightOffset: 0,
+    minX: 0, minY: 0, maxX: 100, maxY: 100, minHeight: 0, maxHeight: 100, baseError: 0, baseDeviation: 0,
+  };
+  const earth = {
+    isDegrees: false, lengths: { unit: 'metre', metres: 1 }, metresPerHeight: 1, curvature: 0, lightSpeed: 1, size: null,
+    scales: [{ y: 0, x: 1, perY: 1 }],
+  };
+  const nodes = Array.from({ length: 16 }, (_, i): [number, number] => [179 + 2 / 3 * (i % 4), latitude(south + 2e5 / 3 * Math.floor(i / 4))]);
+  const degreesAt = (within: number, x: number, y: number): string[] =>
+    new Frame(facts, { horizontal: 'metre', height: 'metre' }, earth, { nodes, within }).where({ x, y }).split('\n')[1].split('  ');
+  for (const [across, up] of [[0.1, 0.9], [0.45, 0.55], [0.2, 0.17]] as const) {
+    const [lat, lon] = degreesAt(1e-6, west + across * aside, south + up * 2e5);
+    assert.equal(lon, `${(179 + 2 * across).toFixed(5)}\u00b0 E`);
+    assert.equal(lat, `${latitude(south + up * 2e5).toFixed(5)}\u00b0 N`);
+  }
+  assert.deepEqual(degreesAt(0.004, west + 0.75 * aside, south), [`${latitude(south).toFixed(2)}\u00b0 N`, '179.50\u00b0 W']);
+  const native = new Frame(facts, { horizontal: 'metre', height: 'metre' }, earth).where({ x: west, y: south });
+  assert.doesNotMatch(native, /\u00b0/);
+});
+
 test('metadata that tell no ground, or nonsense, tell nothing', () => {
   assert.equal(toldBy(null).ground, null);
   assert.equal(toldBy({ ground: { geographic: true, semi_major: -1, metres_per_height: 1, radians_per_map_unit: 1 } }).ground, null);

@@ -20,6 +20,18 @@ test('a service', (t) => served(`hills=${store}`, async (address) => {
     await page.locator('a.open', { hasText: 'hills' }).click();
     await complete(page);
     assert.ok(await colours(page) > 20);
+    // The terrain is projected: a place is told in its CRS and in degrees, which the service knows for the same.
+    await page.mouse.click(640, 380);
+    await appears(page, '#answer');
+    const { x, y, height } = await told(page);
+    const degrees = /([\d.]+)\u00b0 N\s+([\d.]+)\u00b0 W/.exec(await text(page, '#answer-note'));
+    assert.ok(degrees !== null);
+    const asked = async (place: string): Promise<number> => {
+      const answer = await fetch(`${address}collections/hills/position?f=json&coords=POINT(${place}`);
+      return (await answer.json() as { points: Array<{ height: number }> }).points[0].height;
+    };
+    assert.equal(await asked(`${x} ${y})&crs=native`), Number(height));
+    assert.ok(Math.abs(await asked(`-${degrees[2]} ${degrees[1]})`) - Number(height)) < 2, 'half a metre aside at most');
   }));
 
   for (const name of names) {
