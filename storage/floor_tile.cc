@@ -50,10 +50,13 @@ class BitReader {
  public:
   explicit BitReader(std::span<const std::byte> from) : from_(from) {}
   /// REQUIRES: has(width)
-  [[nodiscard]] std::uint32_t take(unsigned width) noexcept {
+  [[nodiscard]] std::uint64_t take_word(unsigned width) noexcept {
     const std::uint64_t value = read_bits(from_.data(), at_, width);
     at_ += width;
-    return static_cast<std::uint32_t>(value);
+    return value;
+  }
+  [[nodiscard]] std::uint32_t take(unsigned width) noexcept {
+    return static_cast<std::uint32_t>(take_word(width));
   }
   [[nodiscard]] bool has(std::size_t bits) const noexcept { return at_ + bits <= 8 * from_.size(); }
   /// Nothing follows but the zeros that fill up the last byte.
@@ -233,6 +236,20 @@ void sum_up(FloorTile& tile) noexcept {
   }
 }
 
+/// Takes a row of a block. One of residuals of up to 7 bits, as most are, is a single load.
+void take_residuals(BitReader& bits, unsigned width, std::span<OrderedHeight> out) noexcept {
+  if (width * out.size() > kMostFieldBits) {
+    for (OrderedHeight& residual : out) residual = unzigzag(bits.take(width));
+    return;
+  }
+  std::uint64_t word = bits.take_word(static_cast<unsigned>(width * out.size()));
+  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
+  for (OrderedHeight& residual : out) {
+    residual = unzigzag(static_cast<std::uint32_t>(word & mask));
+    word >>= width;
+  }
+}
+
 const char* take_heights(BitReader& bits, FloorTile& tile) {
   if (!bits.has(kHeightBits)) return kCut;
   const OrderedHeight first_height = bits.take(kHeightBits);
@@ -243,8 +260,8 @@ const char* take_heights(BitReader& bits, FloorTile& tile) {
         const unsigned width = bits.take(kWidthBits);
         if (width > kHeightBits || !bits.has(std::size_t{width} * columns * rows)) return false;
         for (std::uint32_t y = 0; y < rows; ++y) {
-          OrderedHeight* const here = tile.heights.data() + first + std::size_t{y} * tile.width;
-          for (std::uint32_t x = 0; x < columns; ++x) here[x] = unzigzag(bits.take(width));
+          take_residuals(bits, width,
+                         {tile.heights.data() + first + std::size_t{y} * tile.width, columns});
         }
         return true;
       });
