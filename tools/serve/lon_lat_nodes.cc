@@ -16,7 +16,7 @@ constexpr double kMostOff = 0.005;
 constexpr double kNodesPerDegree = 1e9;
 constexpr int kTried = 7;
 
-/// What each of four nodes counts at a share of the way from the first to the last.
+/// The weights of four nodes at a share of the way from the first to the last.
 std::array<double, LonLatNodes::kAside> shares_of_nodes(double at) {
   const double t = 3 * at;
   return {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, -t * (t - 1) * (t - 3) / 2,

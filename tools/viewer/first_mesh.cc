@@ -81,7 +81,7 @@ WholeHeights whole_heights(const StoreFacts& facts) {
   return {true, std::exp2(std::ceil(std::log2(relief / 65535.0))), 0.0};
 }
 
-/// What is drawn first, heights as whole numbers.
+/// The picture that is drawn first, heights as whole numbers.
 struct Picture {
   std::vector<std::array<std::int64_t, 3>> vertices;
   std::vector<bool> has_height;
