@@ -43,7 +43,7 @@ TEST_F(ViewerCli, WritesThePageAndTheStreamThatItOpens) {
   const std::string dem = stream("dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
-  EXPECT_EQ(answer.at("files").size(), 10U);
+  EXPECT_EQ(answer.at("files").size(), 11U);
   for (const json& written : answer.at("files")) {
     const std::string name = written.at("name");
     EXPECT_EQ(written.at("bytes"), fs::file_size(file("site/" + name))) << name;
@@ -79,7 +79,7 @@ TEST_F(ViewerCli, AStreamThatLiesInTheFolderStaysWhereItIs) {
   fs::create_directory(file("site"));
   const std::string dem = stream("site/dem.ptins");
   const json answer = answer_of({"viewer", "-o", file("site"), "--stream", dem, "--json"});
-  EXPECT_EQ(answer.at("files").size(), 9U);
+  EXPECT_EQ(answer.at("files").size(), 10U);
   EXPECT_EQ(answer.at("stream"), "dem.ptins");
 }
 
@@ -176,12 +176,13 @@ TEST(ViewerPage, TheFilesAreSmallEnoughToOpenQuickly) {
     if (file.name.ends_with(".wasm")) {
       EXPECT_TRUE(file.content.starts_with(std::string_view("\0asm", 4))) << file.name;
     }
-    if (file.name == "questions.wasm") continue;
+    if (file.name == "questions.wasm" || file.name == "base_map.js") continue;
     at_once += file.content.size();
     packed += http::gzip(file.content, http::GzipFor::kManyAnswers).size();
   }
   EXPECT_LT(bytes.at("decoder.wasm"), 90'000U) << "what every visitor waits for";
   EXPECT_LT(bytes.at("questions.wasm"), 135'000U) << "fetched when something is asked";
+  EXPECT_LT(bytes.at("base_map.js"), 8'000U) << "fetched when a base map is turned on";
   EXPECT_LT(at_once, 260'000U) << "before packing";
   EXPECT_LT(packed, 100'000U) << "as a browser gets it";
 }

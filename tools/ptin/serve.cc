@@ -37,6 +37,7 @@ namespace {
 struct ServeCommand {
   std::vector<std::string> files;
   std::string listen, public_url, cors, token_file, metrics;  // Empty: not given.
+  std::string base_map, base_map_attribution;
   std::string config, memory;
   std::vector<std::string> limits, trusted_proxies;
   int threads = 0;  ///< 0: as many as the process may use.
@@ -75,6 +76,11 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   if (!command.cors.empty()) {
     options.cors_origin = serve::checked_origin(command.cors, "--cors");
   }
+  if (!command.base_map.empty()) options.base_map = {command.base_map, {}};
+  if (!command.base_map_attribution.empty()) {
+    options.base_map.attribution = command.base_map_attribution;
+  }
+  serve::check_base_map(options.base_map);
   if (!command.metrics.empty()) {
     options.metrics = serve::metrics_for(command.metrics, "--metrics");
   }
@@ -168,15 +174,22 @@ void add_question(ask::Parameters& rows, ServeCommand& command) {
   rows.add("public-url", &command.public_url, "URL",
            "The address under which clients know the service, as https://example.org/terrain/: "
            "addresses in answers begin with it");
-  rows.add("config", &command.config, "FILE",
-           "TOML: listen, threads, public_url, cors, token_file, files, metrics, trusted_proxies, "
-           "[collections], [limits]; options win over it");
+  rows.add(
+      "config", &command.config, "FILE",
+      "TOML: listen, threads, public_url, cors, base_map, base_map_attribution, token_file, files, "
+      "metrics, trusted_proxies, [collections], [limits]; options win over it");
   ask::add_threads(rows, command.threads,
                    "Questions of each lane (points, tiles, sweeps) that are computed at once");
   rows.add("memory", &command.memory, "SIZE",
            "Memory of all bodies, questions and answers; as much as fills all threads without it");
   rows.add("limit", &command.limits, "NAME=VALUE", limits_help()).repeated();
   rows.add("cors", &command.cors, "ORIGIN", "Web pages of this origin may ask; * for all");
+  rows.add("base-map", &command.base_map, "TEMPLATE",
+           "Tiles of Web Mercator that the viewer lays over terrains when its user wants them, as "
+           "https://tiles.example.org/{z}/{x}/{y}.png, or with {TileMatrix}, {TileCol} and "
+           "{TileRow}; browsers fetch them, the service does not");
+  rows.add("base-map-attribution", &command.base_map_attribution, "TEXT",
+           "Whom pages name where they show the base map; its host without it");
   rows.add("token-file", &command.token_file, "FILE",
            "Questions need the token of its first line, as Authorization: Bearer TOKEN, or once as "
            "?token=TOKEN in a browser");

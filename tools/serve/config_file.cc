@@ -45,6 +45,10 @@ void take_setting(const std::string& name, const std::string& value, const std::
     options.public_address = public_address_of(value, path);
   } else if (name == "cors") {
     options.cors_origin = checked_origin(value, path);
+  } else if (name == "base_map") {
+    options.base_map.tiles = value;
+  } else if (name == "base_map_attribution") {
+    options.base_map.attribution = value;
   } else if (name == "token_file") {
     options.token = read_token(next_to(path, value));
   } else if (name == "files") {
@@ -61,9 +65,9 @@ void take_setting(const std::string& name, const std::string& value, const std::
     }
   } else {
     refuse("\"" + name +
-               "\" means nothing here; there are listen, threads, public_url, cors, token_file, "
-               "files, "
-               "metrics, trusted_proxies, and the tables [collections] and [limits]",
+               "\" means nothing here; there are listen, threads, public_url, cors, base_map, "
+               "base_map_attribution, token_file, files, metrics, trusted_proxies, and the tables "
+               "[collections] and [limits]",
            path);
   }
 }

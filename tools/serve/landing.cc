@@ -37,7 +37,6 @@ Json link(const std::string& href, const char* rel, std::string_view type, const
   return {{"href", href}, {"rel", rel}, {"type", type}, {"title", title}};
 }
 
-/// What this service knows of a terrain beyond what OGC asks for.
 /// For clients that turn places into degrees themselves.
 Json lon_lat_json(const std::optional<LonLatNodes>& of) {
   if (!of) return nullptr;
@@ -46,6 +45,7 @@ Json lon_lat_json(const std::optional<LonLatNodes>& of) {
   return {{"nodes", std::move(nodes)}, {"within", of->within}};
 }
 
+/// What this service knows of a terrain beyond what OGC asks for.
 Json terrain_json(const Collection& c) {
   const StoreFacts& facts = c.terrain.store().facts();
   return {{"bounds", {c.bounds.min_x, c.bounds.min_y, c.bounds.max_x, c.bounds.max_y}},
@@ -180,6 +180,9 @@ http::Response answer_collections(const Asked& asked) {
 http::Response answer_collection(const Asked& asked) {
   Json json = collection_json(*asked.collection, asked.request.base);
   json["limits"] = limits_json(asked.options);
+  const BaseMap& map = asked.options.base_map;
+  if (!map.tiles.empty())
+    json["base_map"] = {{"tiles", map.tiles}, {"attribution", map.attribution}};
   return json_response(json, format_of(asked).media);
 }
 

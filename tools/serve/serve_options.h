@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tools/http/limits.h"
+#include "tools/serve/base_map.h"
 #include "tools/serve/public_address.h"
 
 namespace ptin::serve {
@@ -50,6 +51,7 @@ struct ServeOptions {
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.
+  BaseMap base_map;         ///< That pages may lay over terrains, when a user wants it.
   std::string cors_origin;  ///< Origin of pages that may read answers; "*" for all; empty: none.
   bool offers_files = false;
   MetricsFor metrics = MetricsFor::kDefault;

@@ -41,7 +41,7 @@ struct SentPage {
 /// What is sent, whose bytes somebody else has.
 struct Sent {
   std::string_view media_type, content, packed;
-  const std::string& etag;
+  std::string etag, policy;
 };
 
 /// Of the first picture of a collection: some of the first splits, in few bytes. Their number is that
@@ -125,7 +125,7 @@ http::Response response_of(const Sent& sent, const Asked& asked) {
   response.lasting_body = is_packed ? sent.packed : sent.content;
   response.add("ETag", is_packed ? http::gzip_etag_of(sent.etag) : sent.etag);
   response.add("Cache-Control", "no-cache");
-  response.add("Content-Security-Policy", tools::viewer_policy(asked.question.has("embed")));
+  response.add("Content-Security-Policy", sent.policy);
   if (is_packed) response.add("Content-Encoding", "gzip");
   if (http::names_etag(request.header("if-none-match").value_or(""), sent.etag)) {
     response.status = 304;
@@ -149,19 +149,25 @@ ask::Parameters viewer_parameters() {
 
 http::Response answer_viewer(const Asked& asked) {
   const std::string_view name = asked.rest.empty() ? "index.html" : asked.rest;
+  const bool in_frames = asked.question.has("embed");
   if (name == "index.html" && asked.question.has("collection") && !asked.question.has("service")) {
     const auto collection = asked.catalogue.find(asked.question.text("collection"));
     if (collection != nullptr) {
       const Page page = page_of(asked, *collection);
-      http::Response response =
-          response_of({"text/html; charset=utf-8", page->content, page->packed, page->etag}, asked);
+      const std::string policy = tools::viewer_policy(in_frames, asked.options.base_map.origin());
+      // A browser that has the page keeps the policy that came with it.
+      const std::string etag = http::etag_of(page->etag + policy);
+      http::Response response = response_of(
+          {"text/html; charset=utf-8", page->content, page->packed, etag, policy}, asked);
       response.held = std::const_pointer_cast<SentPage>(page);
       return response;
     }
   }
   for (const SentFile& sent : sent_files()) {
     if (sent.file.name != name) continue;
-    return response_of({sent.file.media_type, sent.file.content, sent.packed, sent.etag}, asked);
+    return response_of({sent.file.media_type, sent.file.content, sent.packed, sent.etag,
+                        tools::viewer_policy(in_frames)},
+                       asked);
   }
   throw http::Problem(404, "the viewer has no such file; begin with /viewer/index.html");
 }

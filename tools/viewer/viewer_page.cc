@@ -12,6 +12,7 @@ namespace {
 constexpr std::string_view kIndex = "index.html";
 constexpr std::string_view kNoStream = R"(<meta name="ptin-stream" content="">)";
 constexpr std::string_view kPolicy = R"(<meta http-equiv="Content-Security-Policy" content=")";
+constexpr std::string_view kAnyHost = "https: http:";
 constexpr std::string_view kHeadEnd = "</head>";
 
 bool is_plain(char c) {
@@ -61,12 +62,17 @@ std::string viewer_page_for(std::string_view stream, std::string_view first_mesh
   return page;
 }
 
-std::string viewer_policy(bool in_frames) {
+std::string viewer_policy(bool in_frames, std::optional<std::string_view> asked) {
   const std::string_view page = index_page();
   const std::size_t begin = page.find(kPolicy);
   PTIN_CHECK(begin != std::string_view::npos);
   const std::string_view said = page.substr(begin + kPolicy.size());
   std::string policy(said.substr(0, said.find('"')));
+  if (asked) {
+    const std::size_t at = policy.find(kAnyHost);
+    PTIN_CHECK(at != std::string::npos);
+    policy.replace(at, kAnyHost.size(), *asked);
+  }
   return policy + "; frame-ancestors " + (in_frames ? "*" : "'self'");
 }
 

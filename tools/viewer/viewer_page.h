@@ -3,6 +3,7 @@
 // The web viewer as it is packed into the program (tools/viewer/README.md).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,7 +17,7 @@ struct ViewerFile {
   std::string_view content;  ///< Lives as long as the program.
 };
 
-/// index.html, viewer.css, boot.js, viewer.js, shared.js, worker.js, ptin-terrain.js, decoder.wasm, questions.wasm.
+/// index.html, viewer.css, boot.js, viewer.js, shared.js, worker.js, base_map.js, ptin-terrain.js, decoder.wasm, questions.wasm.
 [[nodiscard]] std::span<const ViewerFile> viewer_files() noexcept;
 
 /// index.html, made to open a stream when its address names none.
@@ -31,6 +32,9 @@ struct ViewerFile {
 /// What the page may load and do, as Content-Security-Policy has it. The page itself says the same in an element, but
 /// for who may show it in a frame.
 /// @param in_frames  Any page may show it in a frame; else its own host's alone.
-[[nodiscard]] std::string viewer_policy(bool in_frames);
+/// @param asked      The only origin that the page may ask beside its own; "": none. Without it any, as a
+///                   page of streams from other hosts needs.
+[[nodiscard]] std::string viewer_policy(bool in_frames,
+                                        std::optional<std::string_view> asked = std::nullopt);
 
 }  // namespace ptin::tools

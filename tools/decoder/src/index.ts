@@ -43,7 +43,7 @@ export async function openBytes(bytes: Bytes, { signal, wasm }: OpenOptions = {}
 
 export { type ByteSource, type Bytes, GivenBytes, HostedBytes } from './byte_source.js';
 export { type Certified, type CertifiedPart, certifiedAt, certifiedOf, certifiedWithin } from './certified.js';
-export { type Collection, type LonLatNodes, type StreamBody, collectionAt, streamOf } from './collection.js';
+export { type BaseMap, type Collection, type LonLatNodes, type StreamBody, collectionAt, streamOf } from './collection.js';
 export { Decoder } from './decoder.js';
 export { type Certificate, type Facts, boundsOf, heightOf, onMap } from './facts.js';
 export { type ModuleSource, loadModule } from './load.js';

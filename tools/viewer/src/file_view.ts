@@ -17,6 +17,7 @@ export class FileView implements TerrainView {
   /** The stream itself tells whom to name. */
   readonly attribution = '';
   readonly lonLat = null;
+  readonly baseMap = null;
   private readonly still: StaticStream;
   private bytesInAll = 0;
   /** Nothing more comes. */

@@ -44,8 +44,19 @@ export class Frame {
   /** A place for people: in the terrain's CRS, and in degrees where they are told. */
   where({ x, y }: MapPosition): string {
     const place = coordinates(x, y, this.isDegrees);
+    const { lonLat } = this;
+    const degrees = lonLat === null ? null : this.lonLatAt({ x, y });
+    if (lonLat === null || degrees === null) return place;
+    const [lon, lat] = degrees;
+    const places = Math.min(5, Math.floor(-Math.log10(2 * lonLat.within)));
+    return `${place}\n${coordinates(lon - 360 * Math.round(lon / 360), lat, true, places)}`;
+  }
+
+  /** Longitude, beyond 180 too, and latitude of a place on the map; null where nobody tells them. */
+  lonLatAt({ x, y }: MapPosition): [lon: number, lat: number] | null {
+    if (this.isDegrees) return [x, y];
     const { lonLat, bounds: [west, south, east, north] } = this;
-    if (lonLat === null || !(east > west && north > south)) return place;
+    if (lonLat === null || !(east > west && north > south)) return null;
     const across = sharesOfNodes((x - west) / (east - west)), up = sharesOfNodes((y - south) / (north - south));
     let lon = 0, lat = 0;
     lonLat.nodes.forEach((node, i) => {
@@ -53,9 +64,11 @@ export class Frame {
       lon += share * node[0];
       lat += share * node[1];
     });
-    const places = Math.min(5, Math.floor(-Math.log10(2 * lonLat.within)));
-    return `${place}\n${coordinates(lon - 360 * Math.round(lon / 360), lat, true, places)}`;
+    return [lon, lat];
   }
+
+  /** By how much they may be off, degrees. */
+  get lonLatWithin(): number { return this.lonLat?.within ?? 0; }
 
   sceneX(mapX: number): number { return (mapX - this.middleX) * this.scaleX; }
   sceneY(mapY: number): number { return (mapY - this.middleY) * this.scaleY; }

@@ -142,6 +142,9 @@ export class Smooth {
   }
 }
 
+/** Texture units: colours of heights and of slopes, what is laid over the terrain. A base map has the next two (tile_textures). */
+export const rampUnit = 0, slopeUnit = 1, drapeUnit = 2;
+
 /** A picture as a texture, bound to its unit. Neither is repeated nor shrunk by steps. */
 export function texture(gl: WebGL2RenderingContext, unit: number, picture: Uint8Array | ImageBitmap): WebGLTexture {
   const made = gl.createTexture()!;

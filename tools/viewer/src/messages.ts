@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What the page and its Worker say to each other.
-import type { Certified, Facts, LonLatNodes, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
+import type { BaseMap, Certified, Facts, LonLatNodes, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
 import type { Located, Profile, Sight, SightRequest } from './answers';
 import type { DrawnMesh } from './drawn_mesh';
 import type { Earth } from './earth';
@@ -108,6 +108,8 @@ export interface About {
   crs: string;
   /** Null: not told. */
   lonLat: LonLatNodes | null;
+  /** Null: none. */
+  baseMap: BaseMap | null;
 }
 
 export type FromWorker =

@@ -20,6 +20,7 @@ export class Panel {
   private coloured: readonly [low: number, high: number] | null = null;
   private attribution = '';
   private isPreview = false;
+  private mapCredit = '';
 
   /** @param changed is told which settings the user changed; errors only once the slider rests. */
   constructor(readonly settings: Settings, private readonly changed: (key: keyof Settings) => void) {
@@ -59,7 +60,22 @@ export class Panel {
 
   /** At the lower edge: whom to name. Of a preview also that it is one, where there is no card, and in pictures that are saved. */
   private showCredit(): void {
-    part('attribution').textContent = [this.attribution, this.isPreview ? previewNote : ''].filter(Boolean).join(' \u00b7 ');
+    part('attribution').textContent = [this.attribution, this.mapCredit, this.isPreview ? previewNote : ''].filter(Boolean).join(' \u00b7 ');
+  }
+
+  /** Offers a base map. @param why  It cannot be shown; empty: it can. */
+  offerMap(why: string): void {
+    part('map-choice').hidden = false;
+    document.querySelector<HTMLInputElement>('input[value=map]')!.disabled = why !== '';
+    this.showMap('', why);
+  }
+
+  /** @param credit  Whom to name for a base map. @param note  What is wrong with it. Empty: nothing. */
+  showMap(credit: string, note: string): void {
+    this.mapCredit = credit === '' ? '' : `Map: ${credit}`;
+    this.showCredit();
+    part('map-note').hidden = note === '';
+    part('map-note').textContent = note;
   }
 
   /** The heights at both ends of the colours. */
@@ -162,7 +178,7 @@ export class Panel {
 
   private showLegend(): void {
     const { shading } = this.settings;
-    part('legend').hidden = shading === 'shade' || this.frame === null;
+    part('legend').hidden = shading === 'shade' || shading === 'map' || this.frame === null;
     const bar = part('legend').querySelector<HTMLElement>('i')!;
     bar.style.background = gradientOf(shading === 'slope' ? slopeStops : heightStops);
     if (this.frame === null) return;

@@ -62,7 +62,8 @@ export function toHash(pose: Pose | null, settings: Settings): string {
       rounded(pose.tilt, 4),
     ].join(','));
   }
-  if (settings.shading !== defaults.shading) parts.set('shading', settings.shading);
+  // A link shows no base map: its host is asked for nothing unless somebody here turns it on.
+  if (settings.shading !== defaults.shading && settings.shading !== 'map') parts.set('shading', settings.shading);
   if (settings.wireframe) parts.set('wireframe', '1');
   for (const key of ['exaggeration', 'azimuth', 'altitude', 'interval', 'error'] as const) {
     if (settings[key] !== defaults[key]) parts.set(key, String(rounded(settings[key], 5)));

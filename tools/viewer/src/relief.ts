@@ -5,20 +5,28 @@
 import { type DrawnMesh, edgesOf, surfaceEnd, tilesAcross } from './drawn_mesh';
 import { type Place, type Seen, Marks, pageColour } from './marks';
 import type { Frame } from './frame';
-import { Program, Smooth, texture, Vertices } from './gl';
+import { drapeUnit, Program, rampUnit, slopeUnit, Smooth, texture, Vertices } from './gl';
 import { heightStops, rampPixels, slopeStops } from './ramps';
 import { groundFragment, groundVertex, skyFragment, skyVertex, wallFragment, wallVertex } from './shaders';
 import { Camera, lengthOf, sum, type Triple } from './space';
 import type { Spread } from './surface_raster';
 import { Ground } from './triangle_grid';
 
-export type Shading = 'height' | 'slope' | 'shade';
+export type Shading = 'height' | 'slope' | 'shade' | 'map';
 export type { Place } from './marks';
 
 /** Where the light comes from, in degrees: clockwise from the top of the picture, and above the horizon. */
 export interface Sun {
   azimuth: number;
   altitude: number;
+}
+
+/** A base map whose tiles are on the card, and where they lie (tile_grid). */
+export interface DrawnMap {
+  uniforms: Record<string, readonly number[]>;
+  /** What draws it (map_shader), and the texture units of its samplers. */
+  shader: string;
+  samplers: Record<string, number>;
 }
 
 const radians = Math.PI / 180;
@@ -36,10 +44,12 @@ export class Relief {
   /** Called before each picture, for what follows the camera. Returns true when another picture is due. */
   beforeDrawing: (() => boolean) | null = null;
   pictures = 0;
-  private readonly gl: WebGL2RenderingContext;
+  readonly gl: WebGL2RenderingContext;
   private readonly plain: Program;
   /** Made when it is needed: compiling takes as long as some pictures. */
   private detailed: Program | null = null;
+  private mapped: Program | null = null;
+  private map: DrawnMap | null = null;
   private readonly wall: Program;
   private readonly sky: Program;
   private readonly skyVertices: Vertices;
@@ -76,10 +86,10 @@ export class Relief {
     this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
     this.marks = new Marks(gl);
     this.smooth = new Smooth(gl);
-    texture(gl, 0, rampPixels(heightStops));
-    texture(gl, 1, rampPixels(slopeStops));
-    texture(gl, 2, new Uint8Array(4));
-    this.plain.sampler('ramp', 0);
+    texture(gl, rampUnit, rampPixels(heightStops));
+    texture(gl, slopeUnit, rampPixels(slopeStops));
+    texture(gl, drapeUnit, new Uint8Array(4));
+    this.plain.sampler('ramp', rampUnit);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -130,7 +140,7 @@ export class Relief {
   }
 
   set shading(shading: Shading) {
-    this.shadingNumber = { height: 0, slope: 1, shade: 2 }[shading];
+    this.shadingNumber = { height: 0, slope: 1, shade: 2, map: 2 }[shading];
     this.draw();
   }
 
@@ -164,10 +174,16 @@ export class Relief {
     this.drapeWindow = [0, 0, 0, 0];
     if (picture !== null && this.frame !== null) {
       const { frame } = this;
-      this.drape = texture(this.gl, 2, picture);
+      this.drape = texture(this.gl, drapeUnit, picture);
       const x = frame.sceneX(window[0]), top = frame.sceneY(window[3]);
       this.drapeWindow = [x, top, frame.sceneX(window[2]) - x, frame.sceneY(window[1]) - top];
     }
+    this.draw();
+  }
+
+  /** Shows a base map instead of colours; null: none. */
+  set baseMap(map: DrawnMap | null) {
+    this.map = map;
     this.draw();
   }
 
@@ -327,22 +343,25 @@ export class Relief {
     gl.enable(gl.POLYGON_OFFSET_FILL);
     // The camera is above the ground.
     gl.enable(gl.CULL_FACE);
-    (this.hasDetails ? this.detailed ??= this.detailedMade() : this.plain).use(common);
+    const program = this.map !== null ? this.mapped ??= this.detailedMade(this.map) : this.hasDetails ? this.detailed ??= this.detailedMade() : this.plain;
+    program.use(common);
     for (const tile of this.tilesInSight(drawn)) ground.draw(gl.TRIANGLES, drawn.parts[tile], drawn.parts[tile + 1] - drawn.parts[tile]);
     const tiles = tilesAcross * tilesAcross;
     for (const [part, paint] of [[tiles, [...waterColour, 1]], [tiles + 1, [...voidColour, 2]]] as const) {
       const count = drawn.parts[part + 1] - drawn.parts[part];
       if (count === 0) continue;
-      this.plain.use({ ...common, isFlat: 1, paint });
+      // A base map shows water, too.
+      (this.map !== null ? program : this.plain).use({ ...common, isFlat: 1, paint });
       ground.draw(gl.TRIANGLES, drawn.parts[part], count);
     }
     gl.disable(gl.POLYGON_OFFSET_FILL);
     gl.disable(gl.CULL_FACE);
   }
 
-  private detailedMade(): Program {
-    const made = new Program(this.gl, groundVertex, groundFragment(true));
-    for (const [unit, name] of ['ramp', 'slopeRamp', 'drape'].entries()) made.sampler(name, unit);
+  private detailedMade(map?: DrawnMap): Program {
+    const made = new Program(this.gl, groundVertex, groundFragment(true, map?.shader));
+    const units = { ramp: rampUnit, slopeRamp: slopeUnit, drape: drapeUnit, ...map?.samplers };
+    for (const [name, unit] of Object.entries(units)) made.sampler(name, unit);
     return made;
   }
 
@@ -357,7 +376,7 @@ export class Relief {
     const phase = hasLines ? frame.baseHeight / intervalHeight : 0;
     return {
       shading: this.shadingNumber, interval: hasLines ? intervalHeight * frame.scaleZ : 0, intervalPhase: phase - 5 * Math.floor(phase / 5),
-      drapeWindow: this.drapeWindow,
+      drapeWindow: this.drapeWindow, ...this.map?.uniforms,
     };
   }
 

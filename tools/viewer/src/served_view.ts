@@ -4,7 +4,7 @@
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import {
-  type Certified, certifiedAt, type Collection, DecodeError, type Decoder, type LonLatNodes, mostServings, Problem, Received, type Wanted, widened,
+  type BaseMap, type Certified, certifiedAt, type Collection, DecodeError, type Decoder, type LonLatNodes, mostServings, Problem, Received, type Wanted, widened,
 } from 'ptin-decoder';
 import { rounded } from './format';
 import type { Frame } from './frame';
@@ -60,6 +60,7 @@ export class ServedView implements TerrainView {
 
   get name(): string { return this.collection.title; }
   get attribution(): string { return this.collection.attribution ?? ''; }
+  get baseMap(): BaseMap | null { return this.collection.baseMap ?? null; }
   get lonLat(): LonLatNodes | null { return this.collection.lonLat ?? null; }
   get decoder(): Decoder { return this.shown.decoder; }
   get certified(): Certified { return this.shown.certified; }

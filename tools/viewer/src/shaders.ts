@@ -46,8 +46,11 @@ void main() {
   gl_Position = matrix * vec4(place, 1.0);
 }`;
 
-/** `details`: slopes, isolines and what lies over the terrain, each of which is of a pixel. */
-export const groundFragment = (details: boolean): string => /* glsl */ `
+/**
+ * `details`: slopes, isolines and what lies over the terrain, each of which is of a pixel. `map`: text
+ * with a function `mapped`, which lays a base map over the colour of a place (map_shader).
+ */
+export const groundFragment = (details: boolean, map = ''): string => /* glsl */ `
 uniform sampler2D ramp;
 uniform vec3 haze;
 uniform vec4 paint;           // instead of the ramp where its last is not 0; 2: hatched
@@ -56,12 +59,13 @@ in vec3 vPlace;
 in vec3 vLight;
 in vec2 vShare;
 out vec4 drawn;
-${details ? detailText : ''}
+${details ? detailText : ''}${map}
 void main() {
   vec3 tint = paint.rgb;
   if (paint.a == 0.0) tint = ${details ? 'detailTint()' : 'texture(ramp, vec2(clamp(vShare.x, 0.002, 0.998), 0.5)).rgb'};
   if (paint.a == 2.0 && mod(gl_FragCoord.x + gl_FragCoord.y, 9.0 * hatch) < 1.4 * hatch) tint *= 0.86;
   vec3 colour = tint * ${details ? 'detailLight()' : 'vLight'};
+  ${map !== '' ? 'if (paint.a != 2.0) colour = mapped(colour);' : ''}
   ${details ? 'colour = overlaid(colour);' : ''}
   drawn = vec4(mix(colour, haze, vShare.y), 1.0);
 }`;

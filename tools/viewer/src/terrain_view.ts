@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A terrain that comes from a host, finer the longer it comes: from a file (file_view) or from a service (served_view).
-import type { Certified, Decoder, LonLatNodes, Wanted } from 'ptin-decoder';
+import type { BaseMap, Certified, Decoder, LonLatNodes, Wanted } from 'ptin-decoder';
 import type { Frame } from './frame';
 import type { Answer, Progress, Question } from './messages';
 
@@ -11,6 +11,8 @@ export interface TerrainView {
   readonly attribution: string;
   /** Null where places are told in the CRS alone. */
   readonly lonLat: LonLatNodes | null;
+  /** That may be laid over the terrain; null: none. */
+  readonly baseMap: BaseMap | null;
   /** Whose mesh is shown. */
   readonly decoder: Decoder;
   /** The certificates of the mesh of `decoder`. */

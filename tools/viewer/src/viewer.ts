@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import type { Certificate, Problem } from 'ptin-decoder';
+import type { BaseMap as ToldMap, Certificate, Problem } from 'ptin-decoder';
 import { certifiedAt, certifiedWithin, holds } from 'ptin-decoder/values';
+import type { BaseMap } from './base_map';
 import { Compass } from './compass';
 import { type DrawnMesh, drawnMesh, surfaceEnd } from './drawn_mesh';
 import { scaleAt } from './earth';
@@ -22,6 +23,7 @@ import { savePicture } from './picture_export';
 import { type Place, Relief } from './relief';
 import { Service } from './service';
 import { difference, lengthOf } from './space';
+import { TileGrid } from './tile_grid';
 import { usualExaggeration, View } from './view';
 
 /** Vertices of a mesh whose heights are spread as the terrain's are. */
@@ -51,6 +53,11 @@ class Viewer {
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
   private placeTimer = 0;
+  private mapTimer = 0;
+  /** A base map that may be shown, and the one that is. */
+  private offered: { told: ToldMap; grid: TileGrid } | null = null;
+  private baseMap: BaseMap | null = null;
+  private isMapped = false;
   /** With which the page was opened. */
   private readonly linkPose = fromHash(location.hash).pose;
   /** What the link asks, until it is asked: the address soon tells of the page as it is. */
@@ -198,9 +205,65 @@ class Viewer {
       this.view.setFrame(frame);
       this.poseOfLink();
     }
+    if (about.baseMap !== null) this.offer(about.baseMap, frame);
     this.moved();
     this.isOpen = true;
     this.followLink();
+  }
+
+  private offer(told: ToldMap, frame: Frame): void {
+    const grid = TileGrid.of(frame);
+    this.offered = grid === null ? null : { told, grid };
+    this.panel.offerMap(grid !== null ? ''
+      : frame.lonLatAt({ x: frame.middleX, y: frame.middleY }) === null ? 'No map: nobody tells where on Earth this terrain is.'
+      : 'No map: Web Mercator ends at 85 degrees of latitude.');
+  }
+
+  /** Shows the base map or takes it away; only while it is shown its host is asked. */
+  private async showMap(isShown: boolean): Promise<void> {
+    const { offered } = this;
+    if (!isShown || offered === null) {
+      this.baseMap?.close();
+      if (this.isMapped) this.panel.showMap('', '');
+      this.baseMap = null;
+      this.isMapped = false;
+      return;
+    }
+    if (this.isMapped) return;
+    this.isMapped = true;
+    const credit = offered.told.attribution || new URL(offered.told.tiles).host;
+    const failed = (what: string): void => {
+      this.panel.showMap(credit, what);
+      toast(what);
+    };
+    this.panel.showMap(credit, '');
+    try {
+      const made = await import('./base_map');
+      if (!this.isMapped || this.baseMap !== null) return;
+      this.baseMap = new made.BaseMap(this.relief.gl, offered.grid, offered.told, { drawn: (drawn) => { this.relief.baseMap = drawn; }, failed });
+      this.relief.draw();
+    } catch {
+      failed('base_map.js cannot be had');
+    }
+  }
+
+  /** Some time after a picture: what tiles it lacks. */
+  private followMap(): void {
+    if (this.baseMap === null || this.mapTimer !== 0) return;
+    this.mapTimer = window.setTimeout(() => {
+      this.mapTimer = 0;
+      const { relief, view, frame } = this;
+      if (frame === null) return;
+      const top = frame.relief * view.exaggeration, pixels = relief.canvas.clientHeight * Math.min(devicePixelRatio, 2);
+      this.baseMap?.follow({
+        mayMeet: (west, south, east, north) => relief.camera.mayMeet([west, south, 0], [east, north, top]),
+        sharpness: (west, south, east, north) => {
+          const [cameraX, cameraY] = relief.camera.position;
+          const x = Math.max(west, Math.min(east, cameraX)), y = Math.max(south, Math.min(north, cameraY));
+          return 1 / view.metresPerPixel(Math.max(view.leastDistance, this.depth({ x, y, z: relief.groundAt(x, y) ?? 0 })), pixels);
+        },
+      });
+    }, 150);
   }
 
   private poseOfLink(): void {
@@ -258,7 +321,10 @@ class Viewer {
   /** Carries a setting out. */
   private apply(key: keyof Settings): void {
     const s = this.panel.settings;
-    if (key === 'shading') this.relief.shading = s.shading;
+    if (key === 'shading') {
+      this.relief.shading = s.shading;
+      void this.showMap(s.shading === 'map');
+    }
     if (key === 'azimuth' || key === 'altitude') this.relief.sun = s;
     if (key === 'interval') this.relief.isolines = s.interval;
     if (key === 'error') this.send({ kind: 'limit', error: s.error });
@@ -274,6 +340,7 @@ class Viewer {
     if (current !== null) this.compass.show(current.heading, current.tilt);
     this.showScale(distance);
     this.overlay.drawn();
+    this.followMap();
     if (this.status !== null) {
       const before = this.status.certificate;
       const now = this.status.certificate = this.inSight(this.status);
@@ -486,6 +553,7 @@ class Viewer {
     1: () => { this.panel.set('shading', 'height'); },
     2: () => { this.panel.set('shading', 'slope'); },
     3: () => { this.panel.set('shading', 'shade'); },
+    4: () => { if (this.offered !== null) this.panel.set('shading', 'map'); },
     h: () => { this.inquiry.choose('height'); },
     p: () => { this.inquiry.choose('profile'); },
     s: () => { this.inquiry.choose('sight'); },

@@ -67,9 +67,10 @@ class Session {
     decoder.describe(told.ground);
     const earth = earthOf(decoder, told);
     this.frame = new Frame(facts, told.units, earth);
-    const { name, attribution, lonLat } = this.view;
+    const { name, attribution, lonLat, baseMap } = this.view;
     const crs = /"([^"]*)"/.exec(mapCrsOf(told.crs ?? ''))?.[1] ?? '';
-    say({ kind: 'terrain', facts, units: told.units, earth, name: told.title || name, about: { attribution: told.attribution || attribution, crs, lonLat } });
+    const about = { attribution: told.attribution || attribution, crs, lonLat, baseMap };
+    say({ kind: 'terrain', facts, units: told.units, earth, name: told.title || name, about });
     return this.frame;
   }
 

@@ -20,6 +20,7 @@ test('a service', (t) => served(`hills=${store}`, async (address) => {
     await page.locator('a.open', { hasText: 'hills' }).click();
     await complete(page);
     assert.ok(await colours(page) > 20);
+    assert.ok(await page.locator('#map-choice').isHidden(), 'the service names no base map');
     // The terrain is projected: a place is told in its CRS and in degrees, which the service knows for the same.
     await page.mouse.click(640, 380);
     await appears(page, '#answer');
