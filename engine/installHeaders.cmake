@@ -120,7 +120,7 @@ set(public_headers
     storage/store_facts.h
     storage/store_file.h
     storage/verify.h)
-# What the program needs and users of the library do not: readers of texts and sorting in files, by which it reads points and
+# Headers that the program needs and users of the library do not: readers of texts and sorting in files, by which it reads points and
 # measures samples again, and what it shows of files and processes. They are not installed.
 set(program_headers
     engine/check.h

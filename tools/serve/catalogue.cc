@@ -80,7 +80,7 @@ Collection::Collection(std::string name, const std::string& path)
   const MapPoint b = facts.map.to_map(facts.bounds.max_x, facts.bounds.max_y);
   bounds = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
   lon_lat = lon_lat_of(bounds, crs);
-  lon_lat_within = lon_lat_nodes(bounds, crs);
+  degree_nodes = lon_lat_nodes(bounds, crs);
 }
 
 Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn)

@@ -44,10 +44,10 @@ struct Collection {
   CrsFacts crs;
   Credits credits;
   Ground ground;
-  std::string fingerprint;                    ///< A hash of the content, as hexadecimal digits.
-  Window bounds{};                            ///< Map units.
-  std::optional<Window> lon_lat;              ///< Degrees east and north of CRS84; none: not known.
-  std::optional<LonLatNodes> lon_lat_within;  ///< Over `bounds`, of a projected CRS.
+  std::string fingerprint;                  ///< A hash of the content, as hexadecimal digits.
+  Window bounds{};                          ///< Map units.
+  std::optional<Window> lon_lat;            ///< Degrees east and north of CRS84; none: not known.
+  std::optional<LonLatNodes> degree_nodes;  ///< Over `bounds`, of a projected CRS.
   mutable TileSets tile_sets;
 
   /// What people know it by: its title, or else its name.

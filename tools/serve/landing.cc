@@ -56,7 +56,7 @@ Json terrain_json(const Collection& c) {
           {"vertical_crs", c.crs.has_third_axis ? c.crs.vertical_name : c.crs.vertical_text()},
           {"units", {{"horizontal", c.crs.horizontal_unit}, {"height", c.crs.vertical_unit}}},
           {"geographic", c.crs.geographic},
-          {"lon_lat", lon_lat_json(c.lon_lat_within)},
+          {"lon_lat", lon_lat_json(c.degree_nodes)},
           {"free_of_voids", facts.free_of_voids},
           {"fingerprint", c.fingerprint},
           {"bytes", c.terrain.store().file_bytes()}};

@@ -258,7 +258,7 @@ std::string element_of(const StreamReader& reader) {
   add_vertices(packed, picture);
   add_triangles(packed, picture);
   const double rounding = heights.is_float ? heights.step / 2 : 0.0;
-  // Of a preview nothing is known: null.
+  // Nothing is known of a preview: null.
   nlohmann::json error, deviation;
   if (!is_preview) {
     error = reader.certificate().error + rounding;

@@ -29,7 +29,7 @@ struct ViewerFile {
 /// index.html with the first mesh of what its address names.
 [[nodiscard]] std::string viewer_page_with(std::string_view first_mesh);
 
-/// What the page may load and do, as Content-Security-Policy has it. The page itself says the same in an element, but
+/// The rights of the page, as Content-Security-Policy has them. The page itself says the same in an element, but
 /// for who may show it in a frame.
 /// @param in_frames  Any page may show it in a frame; else its own host's alone.
 /// @param asked      The only origin that the page may ask beside its own; "": none. Without it any, as a

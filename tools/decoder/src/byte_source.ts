@@ -4,7 +4,7 @@
 import { Problem, Tries, here, opened, until } from './requests.js';
 
 export interface ByteSource {
-  /** Of all that came. */
+  /** The bytes of all that came. */
   readonly bytes: number;
   /** The next bytes, which stay as they are; null at the end. Throws what keeps them away, and may be called again then. */
   next(signal?: AbortSignal): Promise<Uint8Array | null>;
@@ -34,9 +34,9 @@ export class HostedBytes implements ByteSource {
   private hasEnded = false;
   private version: Version | null = null;
   private isPacked = false;
-  /** Of the bytes that came, where the host names no version. */
+  /** A hash of the bytes that came, where the host names no version. */
   private sum = firstSum;
-  /** What came behind bytes that were passed over. */
+  /** Bytes that came behind those that were passed over. */
   private over: Uint8Array | null = null;
   private letGo: ReturnType<typeof setTimeout> | undefined;
 
@@ -108,7 +108,7 @@ export class HostedBytes implements ByteSource {
     return this.version !== null && this.version.etag === null && this.version.modified === null;
   }
 
-  /** What lacks, of this file alone. Of one without a name all is asked for, so that what came can be compared. */
+  /** The rest, of this file alone. A file without a name is asked for whole, so that what came can be compared. */
   private wantedRange(): Record<string, string> {
     if (this.bytes === 0 || this.isPacked || this.isUnnamed) return {};
     const range = { Range: `bytes=${this.bytes}-` };
@@ -158,7 +158,7 @@ function isSame(before: Version, now: Version, isSure: boolean): boolean {
 /** The host has nothing at the place from which it was asked on. */
 const isBehindEnd = (error: unknown): boolean => error instanceof Problem && error.status === 416;
 
-/** Of a status that is no failure of the host: trying again would not help. */
+/** The Problem of a status that is no failure of the host: trying again would not help. */
 function replaced(status: number): Problem {
   return new Problem('The terrain was replaced', 'The host has another file now; open it anew.', status);
 }

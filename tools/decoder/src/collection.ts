@@ -6,17 +6,17 @@ import { textOf } from './metadata.js';
 import type { Serving } from './received.js';
 import { Problem, opened } from './requests.js';
 
-/** What a service tells of a terrain. */
+/** A terrain as its service tells it. */
 export interface Collection {
   title: string;
-  /** Whom to name; empty: nobody told. */
+  /** The attribution; empty: nobody told. */
   attribution?: string;
   bounds: Window;
-  /** What the service gives a question at most, by the names of its limits; those that it tells. */
+  /** The most that the service gives a question, by the names of its limits; those that it tells. */
   limits?: Readonly<Record<string, number>>;
   /** The least and the greatest of the samples. */
   heights: readonly [number, number];
-  /** Of a projected CRS; null where its service does not tell. */
+  /** Degrees of a projected CRS; null where its service does not tell. */
   lonLat?: LonLatNodes | null;
   /** A map of somebody else that pages may lay over the terrain; null: its service names none. */
   baseMap?: BaseMap | null;
@@ -25,7 +25,7 @@ export interface Collection {
 export interface BaseMap {
   /** The address of a tile of Web Mercator, with {z}, {x} and {y} or {TileMatrix}, {TileCol} and {TileRow}. */
   tiles: string;
-  /** Whom to name; empty: nobody told. */
+  /** The attribution; empty: nobody told. */
   attribution: string;
 }
 
@@ -39,7 +39,7 @@ export interface LonLatNodes {
   within: number;
 }
 
-/** What POST .../stream takes. */
+/** The body of POST .../stream. */
 export interface StreamBody {
   window: Window;
   error?: number;

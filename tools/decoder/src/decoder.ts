@@ -70,7 +70,7 @@ export class Decoder {
   get numbering(): number { return this.wasm.numbering(); }
   get splits(): number { return this.wasm.splits(); }
   get splitsInAll(): number { return this.wasm.splitsInAll(); }
-  /** What the stream certifies where it was asked for, which certifiedOf() tells; null before the first mesh. */
+  /** The certificate of the stream where it was asked for, which certifiedOf() tells; null before the first mesh. */
   get certificate(): Certificate | null {
     return !this.hasMesh ? null : { error: this.wasm.certifiedError(), deviation: this.wasm.certifiedDeviation() };
   }
@@ -86,7 +86,7 @@ export class Decoder {
     return Object.fromEntries(factNames.map((name, i) => [name, numbers[i]])) as Facts;
   }
 
-  /** What the sender tells in JSON: CRS, units, what was asked. Text that is no JSON tells nothing: null. */
+  /** Metadata of the sender in JSON: CRS, units, what was asked. Text that is no JSON tells nothing: null. */
   get metadata(): unknown {
     const bytes = new Uint8Array(this.wasm.memory.buffer, this.wasm.metadata(), this.wasm.metadataBytes());
     try {

@@ -18,9 +18,9 @@ export interface Units {
   height: string;
 }
 
-/** What the metadata of a stream tell. */
+/** Facts that the metadata of a stream tell. */
 export interface Told {
-  /** What the terrain is called, and whom to name; empty: not told. */
+  /** The title of the terrain, and its attribution; empty: not told. */
   title: string;
   attribution: string;
   /** The CRS of the map positions as WKT, and of the heights where that is known; null: not told. */

@@ -17,7 +17,7 @@ export class DecodeError extends Error {
   }
 }
 
-/** What every module exports. */
+/** The exports of every module. */
 export interface ModuleExports {
   memory: WebAssembly.Memory;
   _initialize(): void;
@@ -37,7 +37,7 @@ export function instanceOf<Exports extends ModuleExports>(module: WebAssembly.Mo
   return wasm;
 }
 
-/** What a function threw, as the DecodeError that it is or stands for: memory that cannot grow traps. */
+/** The fault that a function threw, as the DecodeError that it is or stands for: memory that cannot grow traps. */
 export function decodeErrorOf(error: unknown): DecodeError {
   return error instanceof DecodeError ? error
     : new DecodeError('resource_exhausted', 'the decoder came to its end: ' + String(error));

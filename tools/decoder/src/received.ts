@@ -13,7 +13,7 @@ export interface Wanted {
   error: number;
 }
 
-/** What a receiver was served, as `ptin unstream` tells it and `ptin stream --have` takes it. */
+/** A serving that a receiver had, as `ptin unstream` tells it and `ptin stream --have` takes it. */
 export interface Serving {
   window: Window;
   error?: number;
@@ -27,21 +27,21 @@ export const mostServings = 60;
 export class Received {
   readonly decoder: Decoder;
   readonly have: Serving[] = [];
-  /** Of all that came. */
+  /** The bytes of all that came. */
   bytes = 0;
   private readonly whole: Wanted[] = [];
   /** The certificate of each serving, in its window. */
   private readonly parts: CertifiedPart[] = [];
   /** The window of the stream that is coming, once it has begun. */
   private coming: Window | null = null;
-  /** Of the file that answered: streams of another one cannot go on from this one's. */
+  /** The fingerprint of the file that answered: streams of another one cannot go on from this one's. */
   private fingerprint = '';
 
   constructor(module: WebAssembly.Module) {
     this.decoder = new Decoder(module);
   }
 
-  /** What is certified where, also while a stream comes. */
+  /** Certificates by window, also while a stream comes. */
   get certified(): Certified {
     const { certificate } = this.decoder;
     return this.coming === null || certificate === null ? [...this.parts] : [...this.parts, { window: this.coming, ...certificate }];

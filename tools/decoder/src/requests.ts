@@ -19,7 +19,7 @@ export class Problem extends Error {
 export const here = (): string | undefined => (globalThis as { location?: { href: string } }).location?.href;
 
 /**
- * What a host answers. Throws the Problem of a host that cannot be reached, or of an answer that is none; and the reason of the
+ * The answer of a host. Throws the Problem of a host that cannot be reached, or of an answer that is none; and the reason of the
  * signal once that is aborted.
  */
 export async function opened(address: string, init: RequestInit = {}): Promise<Response> {
@@ -114,7 +114,7 @@ function pause(milliseconds: number, signal?: AbortSignal): Promise<void> {
   });
 }
 
-/** What a promise becomes, unless the signal is aborted before: then its reason is thrown. */
+/** The value of a promise, unless the signal is aborted before: then its reason is thrown. */
 export async function until<T>(promise: Promise<T>, signal?: AbortSignal): Promise<T> {
   if (signal === undefined) return promise;
   let aborted = (): void => undefined;

@@ -10,7 +10,7 @@ import { Received, type Wanted, mostServings } from './received.js';
 import { Problem, Tries } from './requests.js';
 import { type RefineOptions, type State, Terrain } from './terrain.js';
 
-/** Of a piece that is asked for: each is twice as large as the one before, so that few are. */
+/** Bytes of a piece that is asked for: each is twice as large as the one before, so that few are. */
 const firstBytes = 64 * 1024, mostBytes = 16 * 1024 * 1024, leastBytes = 32 * 1024;
 
 export class ServedTerrain extends Terrain {

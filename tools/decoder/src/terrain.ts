@@ -9,11 +9,11 @@ import { type Told, mapCrsOf, toldBy } from './metadata.js';
 import { type LocalFrame, localPositions, mapPositions, surfaceCorners } from './surface.js';
 
 /**
- * What holds of a mesh in all of a window: no sample of the source is farther from it than `error`, and no point of the full terrain
+ * A certificate of a mesh in all of a window: no sample of the source is farther from it than `error`, and no point of the full terrain
  * than `deviation`, both measured upright.
  */
 export interface Certainty extends Certificate {
-  /** Of both, as `metre` or `US survey foot`; null: the terrain does not tell. */
+  /** The unit of both, as `metre` or `US survey foot`; null: the terrain does not tell. */
   unit: string | null;
   /** Where it holds: west, south, east, north in the CRS of the file. */
   window: Window;
@@ -78,7 +78,7 @@ export abstract class Terrain {
   private isRefining = false;
   private described: { told: Told; frame: Frame } | null = null;
 
-  /** Whose mesh this is: for what is not offered here. Valid until more is received. */
+  /** The decoder whose mesh this is: for what is not offered here. Valid until more is received. */
   abstract readonly decoder: Decoder;
   /** Received until now. */
   abstract readonly bytes: number;
@@ -102,7 +102,7 @@ export abstract class Terrain {
   get crs(): string | null { return this.told.crs; }
   /** The same without a vertical part: what libraries of maps read. */
   get mapCrs(): string | null { return this.crs === null ? null : mapCrsOf(this.crs); }
-  /** Of the map and of heights; null: not told. */
+  /** Units of the map and of heights; null: not told. */
   get units(): { horizontal: string | null; height: string | null } {
     const { horizontal, height } = this.told.units;
     return { horizontal: named(horizontal), height: named(height) };
@@ -159,7 +159,7 @@ export abstract class Terrain {
     return last;
   }
 
-  /** What is certified in all of a window, in the CRS of the file; null where nothing is known of a part of it. */
+  /** The certificate of all of a window, in the CRS of the file; null where nothing is known of a part of it. */
   certifiedIn(window: Window): Certainty | null {
     // Beyond the terrain there is no mesh of which anything could be said.
     const within = widened(window, this.bounds, 0);
@@ -172,7 +172,7 @@ export abstract class Terrain {
     return error > 0 && (this.certifiedIn(window)?.error ?? Infinity) <= error;
   }
 
-  /** What the metadata of its stream tell. */
+  /** Facts that the metadata of its stream tell. */
   protected get told(): Told { return this.about.told; }
 
   private get about(): { told: Told; frame: Frame } {

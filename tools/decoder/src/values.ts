@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What index.ts has and needs no WebAssembly module, for scripts that show what another one decodes: the viewer's page.
+// Parts of index.ts that need no WebAssembly module, for scripts that show what another one decodes: the viewer's page.
 export { certifiedAt, certifiedWithin } from './certified.js';
 export { collectionAt, streamOf } from './collection.js';
 export { boundsOf, factNames, heightOf, onMap } from './facts.js';

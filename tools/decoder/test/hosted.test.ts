@@ -17,12 +17,12 @@ const other = bytes.map((b, i) => (i === 2000 ? b ^ 1 : b));
 
 interface Host {
   ranges?: boolean;
-  /** Of each answer: behind so many bytes the connection breaks. */
+  /** Bytes of each answer, behind which the connection breaks. */
   breaks?: (answer: number) => number;
-  /** Of each answer: names of the file's version. */
+  /** Names of the file's version, of each answer. */
   names?: (answer: number) => Record<string, string>;
   status?: (answer: number) => number;
-  /** Of each answer: the file. */
+  /** The file of each answer. */
   given?: (answer: number) => Uint8Array;
   length?: boolean;
 }

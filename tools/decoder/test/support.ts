@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What several tests need: the program, streams of small terrains, the decoder, meshes that the program wrote.
+// Helpers of several tests: the program, streams of small terrains, the decoder, meshes that the program wrote.
 import { type ChildProcess, execFileSync, spawn } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -17,7 +17,7 @@
 
 namespace {
 
-/// What 32 bits of address leave for the mesh and a frame, beside the allocator's own.
+/// Bytes that 32 bits of address leave for the mesh and a frame, beside the allocator's own.
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{3} << 30;
 
 ptin::StreamReader& reader() {
@@ -101,7 +101,7 @@ PTIN_EXPORT(metresPerMapUnit) const ptin::MapPoint* metres_per_map_unit(double x
   return &metres;
 }
 
-/// What lines of sight are drawn with, in the unit of heights: how much lower what lies at distance 1 looks, and how far light
+/// Numbers that lines of sight are drawn with, in the unit of heights: how much lower what lies at distance 1 looks, and how far light
 /// goes in a second.
 PTIN_EXPORT(curvature) double curvature() {
   ptin::Curvature curvature;

@@ -36,7 +36,7 @@ export function addressOfTile(template: string, grid: Pick<TileGrid, 'level' | '
 export class BaseMap {
   private readonly host: string;
   private textures: TileTextures | null = null;
-  /** Of the tiles on the card; those that were wanted last come last. */
+  /** Layers of the tiles on the card; those that were wanted last come last. */
   private readonly layers = new Map<string, number>();
   private readonly loading = new Map<string, AbortController>();
   private readonly failed = new Set<string>();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What runs before the page's module: finds out what to open, has the Worker ask for it while the module still comes, and says what
+// The script before the page's module: finds out what to open, has the Worker ask for it while the module still comes, and says what
 // goes wrong without the module. Where a first picture lies in the page, the module comes first and begins the Worker.
 import type { Boot, Source } from './messages';
 
 const query = new URLSearchParams(location.search);
 
-/** What the address names, or the page itself. */
+/** The source that the address names, or the page itself. */
 function sourceOf(): Source | null {
   const collection = query.get('collection');
   const stream = query.get('stream') || document.querySelector<HTMLMetaElement>('meta[name=ptin-stream]')!.content;
@@ -29,7 +29,7 @@ function trouble(title: string, message: string, aside = false): void {
   else say();
 }
 
-/** What is wrong where a script cannot be run. */
+/** The trouble where a script cannot be run. */
 const missing = 'or shared.js does not lie beside the page, or this browser is too old for them.';
 
 function begun(boot: Boot): Worker {
@@ -62,7 +62,7 @@ function start(): void {
   };
   document.getElementById('module')!.addEventListener('error', noModule);
   if (!('noModule' in HTMLScriptElement.prototype)) noModule();
-  // Of a first picture only those of a page are drawn that opens what it was made for.
+  // A first picture is drawn only by a page that opens what it was made for.
   boot.hasPicture = document.getElementById('first-mesh') !== null && query.get('stream') === null;
   if (boot.source !== null && !boot.hasPicture) boot.open(boot.source);
 }

@@ -9,7 +9,7 @@ import { type Spread, SurfaceRaster } from './surface_raster';
 import { extentOf, gridOf, type TriangleGrid } from './triangle_grid';
 import { kindsOf, land, water } from './water';
 
-/** Of a terrain's land along each side: parts that are not in sight are not drawn, nearer ones first. */
+/** The number of parts of a terrain's land along each side: those that are not in sight are not drawn, nearer ones first. */
 export const tilesAcross = 8;
 
 export interface DrawnMesh {
@@ -25,12 +25,12 @@ export interface DrawnMesh {
   tileExtents: Float32Array;
   /** Walls of the border: x, y, z and 1 at the foot for four vertices an edge. */
   walls: Float32Array;
-  /** Of each of them, which way is out: 32767 for 1. */
+  /** The way out of each of them: 32767 for 1. */
   wallNormals: Int16Array;
   grid: TriangleGrid;
   /** Null without land. */
   spread: Spread | null;
-  /** What is not void, in the scene: its least and its greatest x and y. */
+  /** The extent of what is not void, in the scene: its least and its greatest x and y. */
   extent: { west: number; south: number; east: number; north: number };
 }
 

@@ -9,7 +9,7 @@ export interface Earth {
   isDegrees: boolean;
   lengths: Lengths;
   metresPerHeight: number;
-  /** What lines of sight are drawn with (Decoder). */
+  /** Numbers that lines of sight are drawn with (Decoder). */
   curvature: number;
   lightSpeed: number;
   /** Metres of a map unit along x and along y, at parallels from south to north. */

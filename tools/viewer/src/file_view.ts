@@ -7,7 +7,8 @@ import {
 } from 'ptin-decoder';
 import { moduleAt } from './fetching';
 import type { Frame } from './frame';
-import type { Answer, Certainty, Progress, Question, QuestionOf } from './messages';
+import type { Answer, Certainty, Progress, Question } from './messages';
+import { measuredInPlan } from './plan';
 import { type Asked, Questions } from './questions';
 import { cornersOf, joined } from './stations';
 import { StaticStream } from './static_stream';
@@ -66,7 +67,7 @@ export class FileView implements TerrainView {
   setView(_wanted: Wanted[]): void {}
 
   async answer(question: Question, frame: Frame): Promise<Answer> {
-    if (question.kind === 'area') return this.measured(question, frame);
+    if (question.kind === 'area') return measuredInPlan(question, frame);
     if (question.kind === 'viewshed') {
       throw new Problem('Nobody can be asked', 'A viewshed needs a service; this terrain comes from a file.');
     }
@@ -89,25 +90,7 @@ export class FileView implements TerrainView {
     return { ...question, sight, profile, certainty };
   }
 
-  /** The area of a polygon in plan; of degrees, and of volumes, the page knows nothing. */
-  private measured(question: QuestionOf<'area'>, frame: Frame): Answer {
-    const { unit, metres } = frame.earth.lengths;
-    if (frame.isDegrees || metres === null) {
-      throw new Problem('No areas', 'Areas in degrees, or in map units of an unknown size, need a service; this terrain comes from a file.');
-    }
-    const { ring } = question;
-    const [o] = ring;
-    const twice = ring.reduce((sum, a, i) => {
-      const b = ring[(i + 1) % ring.length];
-      return sum + (a.x - o.x) * (b.y - o.y) - (b.x - o.x) * (a.y - o.y);
-    }, 0);
-    return {
-      ...question, measured: { surface: Math.abs(twice) / 2, empty: 0, cut: null, fill: null, unit },
-      certainty: { error: null, deviation: null, of: 'mesh', isExact: true },
-    };
-  }
-
-  /** What the metadata tell, once they are there. */
+  /** Facts that the metadata tell, once they are there. */
   private get told(): Told {
     return this.metadata ??= toldBy(this.decoder.metadata);
   }
@@ -125,7 +108,7 @@ export class FileView implements TerrainView {
         this.wake?.();
       }
     } catch (error) {
-      // What came stays.
+      // The part that came stays.
       this.events.failed(error);
     }
     this.arrived = true;
@@ -140,7 +123,7 @@ export class FileView implements TerrainView {
       try {
         more = this.still.apply(40);
       } catch (error) {
-        // What came whole before the damage is shown, though the damage was met before anything was.
+        // The part that came whole before the damage is shown, though the damage was met before anything was.
         this.hasFailed = true;
         this.events.settled();
         throw error;
@@ -167,7 +150,7 @@ export class FileView implements TerrainView {
     return coming;
   }
 
-  /** What is asked at places of the mesh that is there. */
+  /** A question at places of the mesh that is there. */
   private askedAt(places: readonly MapPosition[]): Asked & { certainty: Certainty } {
     const { decoder } = this;
     const { ground, freeOfVoids, request: { error, window, levels, splits } } = this.told;

@@ -94,7 +94,7 @@ function joinNeighbours(triangles: Uint32Array, vertexCount: number): void {
   }
 }
 
-/** Of a sphere; the decoder knows better, and takes its place. For a picture alone. */
+/** A sphere as the Earth; the decoder knows better, and takes its place. For a picture alone. */
 function roughEarth(facts: Facts, { ground, units }: Told): Earth {
   const isDegrees = ground?.geographic ?? units.horizontal === 'degree';
   const metres = ground?.metres_per_map_unit ?? 1, degree = 111195;

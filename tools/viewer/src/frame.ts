@@ -78,7 +78,7 @@ export class Frame {
   heightAt(sceneZ: number): number { return this.baseHeight + sceneZ / this.scaleZ; }
 }
 
-/** What each of four nodes counts at a share of the way from the first to the last. */
+/** The weight of each of four nodes at a share of the way from the first to the last. */
 function sharesOfNodes(at: number): number[] {
   const t = 3 * at;
   return [(1 - t) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2, t * (1 - t) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6];

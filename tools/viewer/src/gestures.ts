@@ -17,7 +17,7 @@ export class Gestures {
   private level = 0;
   private pivot: Triple = [0, 0, 0];
   private orbits = false;
-  /** What two fingers do; null until it is clear. */
+  /** The gesture of two fingers; null until it is clear. */
   private pair: 'tilt' | 'pinch' | null = null;
   private begun: Pixel[] = [];
 

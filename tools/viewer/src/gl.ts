@@ -114,7 +114,7 @@ export class Smooth {
     this.depth = gl.createRenderbuffer();
   }
 
-  /** What is drawn until `end` is smooth. */
+  /** Begins a drawing, which is smooth until `end`. */
   begin(width: number, height: number): void {
     const { gl, size, samples } = this;
     if (samples < 2) return;

@@ -19,7 +19,7 @@ export type Tool = 'height' | 'profile' | 'area' | 'sight' | 'viewshed';
 type AnswerOf<K extends Answer['kind']> = Extract<Answer, { kind: K }>;
 type AlongLine = AnswerOf<'profile'> | AnswerOf<'sight'>;
 
-/** What the page lends the tools. */
+/** Parts of the page that the tools use. */
 export interface Ground {
   relief: Relief;
   frame(): Frame | null;
@@ -29,7 +29,7 @@ export interface Ground {
   /** Moves the camera: shares of the picture to the right and ahead, or away by a factor. */
   pan(right: number, ahead: number): void;
   zoom(factor: number): void;
-  /** What is asked has changed. */
+  /** The question has changed. */
   changed(): void;
 }
 
@@ -61,7 +61,7 @@ export class Inquiry {
   private asked: Question | null = null;
   private ticket = 0;
   private shownProfile: AlongLine | null = null;
-  /** Of the scene, which the answer should not cover. */
+  /** Places of the scene, which the answer should not cover. */
   private spoken: Place[] = [];
 
   private readonly relief: Relief;
@@ -89,7 +89,7 @@ export class Inquiry {
     else this.showForm(hints[tool]);
   }
 
-  /** What was asked, as a link has it. */
+  /** The question, as a link has it. */
   get link(): AskedLink | null {
     if (this.asked === null || (this.asked.kind === 'profile' && this.asked.isLonLat === true)) return null;
     return { tool: this.tool, places: this.places, values: this.fields.map((f) => this.formValue(f.name)) };
@@ -112,7 +112,7 @@ export class Inquiry {
     this.ask({ kind: 'profile', from, to: rest[rest.length - 1], via: rest.slice(0, -1), isLonLat });
   }
 
-  /** What a tool is asked with, before there is an answer. */
+  /** The form of a tool, before there is an answer. */
   private showForm(hint: string): void {
     this.write(titles[this.tool], '', hint);
     this.layOut(false);
@@ -350,7 +350,7 @@ export class Inquiry {
       notes.push(`${number(volume.volume, 5)} cubic ${unit} ${where} ${number(against, 5)} ${sign}` +
         (low === high ? '' : `, certainly ${low} to ${high}`));
     }
-    if (cut === null) notes.push('Volumes need a service; this terrain comes from a file.');
+    if (cut === null) notes.push('Volumes need a service that has /volume.');
     else notes.push(certaintyNote(certainty, sign));
     this.write('Area', area(surface), notes.join('\n'));
     const border = [...ring, ring[0]].flatMap((a, i, all) => {

@@ -37,7 +37,7 @@ export interface Peak {
   height: number;
 }
 
-/** Of a terrain's contours every fifth is bold, and has labels. */
+/** Every fifth of a terrain's contours is bold, and has labels. */
 export const indexStep = 5;
 
 /** The pieces of the index contours of a mesh. Cost: its triangles. */

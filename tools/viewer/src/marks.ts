@@ -10,7 +10,7 @@ export interface Place {
   z: number;
 }
 
-/** What all that is drawn is seen by: the uniforms of shaders.ts's `seenFrom`. */
+/** The camera as all that is drawn has it: the uniforms of shaders.ts's `seenFrom`. */
 export type Seen = { matrix: Float64Array; eye: readonly number[]; exaggeration: number };
 
 interface Mark {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the page and its Worker say to each other.
+// Messages of the page and its Worker.
 import type { BaseMap, Certified, Facts, LonLatNodes, MapPosition, Units, Wanted, Window } from 'ptin-decoder';
 import type { Located, Profile, Sight, SightRequest } from './answers';
 import type { DrawnMesh } from './drawn_mesh';
@@ -17,7 +17,7 @@ export type ToWorker =
   | { kind: 'open'; source: Source; folder: string; mostVertices: number }
   /** The certified error at which to stop; 0: all there is. */
   | { kind: 'limit'; error: number }
-  /** What the camera looks at, the coarsest part first. Static streams ignore it. */
+  /** The parts that the camera looks at, the coarsest first. Static streams ignore it. */
   | { kind: 'view'; wanted: Wanted[] }
   | { kind: 'ask'; ticket: number; question: Question };
 
@@ -86,7 +86,7 @@ export interface Progress {
   waitsFor?: string;
   /** Why it is held. */
   heldBy?: 'error' | 'vertices' | 'service';
-  /** What the last answer cost the service. */
+  /** The cost of the last answer to the service. */
   cost?: string;
 }
 
@@ -101,7 +101,7 @@ export interface Status extends Progress {
   certified: Certified;
 }
 
-/** What a terrain tells of itself; empty: nothing. */
+/** Facts that a terrain tells of itself; empty: nothing. */
 export interface About {
   attribution: string;
   /** The name of the CRS of its positions. */
@@ -123,7 +123,7 @@ export type FromWorker =
   /** The trouble, as a sentence. */
   | { kind: 'error'; title: string; message: string };
 
-/** What runs before the page's module (boot) left for it. */
+/** The things that boot left for the page's module, before which it runs. */
 export interface Boot {
   source: Source | null;
   worker: Worker | null;

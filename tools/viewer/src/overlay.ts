@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is written over the picture, once it rests: heights along index contours, and peaks.
+// Labels over the picture, once it rests: heights along index contours, and peaks.
 import type { Window } from 'ptin-decoder';
 import { signOf } from './format';
 import type { Frame } from './frame';
@@ -12,7 +12,7 @@ import type { Peaks } from './peaks';
 import type { Projected } from './projected';
 import type { Place } from './relief';
 
-/** What the overlay is drawn over. */
+/** The picture that the overlay is drawn over. */
 export interface Picture {
   canvas: HTMLCanvasElement;
   frame(): Frame | null;

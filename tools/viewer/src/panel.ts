@@ -47,7 +47,7 @@ export class Panel {
     this.changed(key);
   }
 
-  /** @param attribution  Whom to name; empty: nobody told. */
+  /** @param attribution  The attribution; empty: nobody told. */
   setFrame(frame: Frame, name: string, subtitle: string, attribution: string): void {
     this.frame = frame;
     this.attribution = attribution;
@@ -96,7 +96,7 @@ export class Panel {
       return;
     }
     const { where, height, slack } = place;
-    // Of a height that nobody vouches for no digits are told that it may not have.
+    // A height that nobody vouches for is told without digits that it may not have.
     const step = roundBelow(this.relief / 100);
     const told = document.createElement('b');
     told.textContent = height === null ? 'No terrain here'

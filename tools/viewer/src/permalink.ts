@@ -12,7 +12,7 @@ export interface Settings {
   wireframe: boolean;
   /** How many times as high as it is the terrain is drawn; 0: as its own relief wants it (view). */
   exaggeration: number;
-  /** Of the light, degrees: clockwise from the top of the picture, above the horizon. */
+  /** The light's direction, degrees: clockwise from the top of the picture, above the horizon. */
   azimuth: number;
   altitude: number;
   /** Between isolines, in the height's unit; 0: none. */
@@ -25,7 +25,7 @@ export const defaults: Settings = {
   shading: 'height', wireframe: false, exaggeration: 0, azimuth: 315, altitude: 42, interval: 0, error: 0,
 };
 
-/** What was asked: a tool, places of the map, and what its form said. */
+/** A question: a tool, places of the map, and what its form said. */
 export interface AskedLink {
   tool: Tool;
   places: MapPosition[];
@@ -36,14 +36,14 @@ const tools: readonly Tool[] = ['height', 'profile', 'area', 'sight', 'viewshed'
 /** More corners make no address. */
 const mostPlaces = 100;
 
-/** What was asked as a part of the hash; empty for nothing, and for lines too long for an address. */
+/** A question as a part of the hash; empty for nothing, and for lines too long for an address. */
 export function askedToHash(asked: AskedLink | null): string {
   if (asked === null || asked.places.length > mostPlaces) return '';
   const places = asked.places.map((p) => `${rounded(p.x, 12)},${rounded(p.y, 12)}`).join(';');
   return `&ask=${asked.tool}:${places}` + (asked.values.length === 0 ? '' : `&with=${asked.values.join(',')}`);
 }
 
-/** What a hash asks; null for nothing, or nothing that can be read. */
+/** The question of a hash; null for none, or nothing that can be read. */
 export function askedInHash(hash: string): AskedLink | null {
   const parts = new URLSearchParams(hash.replace(/^#/, ''));
   const [name, text = ''] = (parts.get('ask') ?? '').split(':');
@@ -71,7 +71,7 @@ export function toHash(pose: Pose | null, settings: Settings): string {
   return parts.toString().replace(/%2C/g, ',');
 }
 
-/** What a hash says; what it does not say, or says wrongly, is as it is at first. */
+/** Pose and settings of a hash; what it does not say, or says wrongly, is as it is at first. */
 export function fromHash(hash: string): { pose: Pose | null; settings: Settings } {
   const parts = new URLSearchParams(hash.replace(/^#/, ''));
   const settings = { ...defaults };

@@ -7,13 +7,13 @@ import { decodeErrorOf, describeGround, instanceOf, type MeshExports, meshIn, nu
 import { stationsOf } from './stations';
 import type { Located, PointState, Profile, Sight, SightPoint } from './answers';
 
-/** What is asked: the mesh that a decoder holds, and what is known of it. */
+/** The thing asked: the mesh that a decoder holds, and what is known of it. */
 export interface Asked {
   decoder: Decoder;
   /** Null: not known; lengths are map units. */
   ground: GroundFacts | null;
   freeOfVoids: boolean;
-  /** What holds at the places that are asked; null: no more than the least and the greatest height of the terrain. */
+  /** The certificate at the places that are asked; null: no more than the least and the greatest height of the terrain. */
   certificate: Certificate | null;
   /** No record of the file is missing there. Without a certificate nobody knows. */
   isWhole: boolean;
@@ -39,7 +39,7 @@ export class Questions {
 
   constructor(private readonly module: WebAssembly.Module) {}
 
-  /** What the mesh holds at a place. */
+  /** The mesh at a place. */
   locate(asked: Asked, at: MapPosition): Located {
     return this.ask(asked, (wasm) => {
       const n = numbersAt(wasm.memory, wasm.locate(at.x, at.y), 13);

@@ -24,7 +24,7 @@ export interface Sun {
 /** A base map whose tiles are on the card, and where they lie (tile_grid). */
 export interface DrawnMap {
   uniforms: Record<string, readonly number[]>;
-  /** What draws it (map_shader), and the texture units of its samplers. */
+  /** The text that draws it (map_shader), and the texture units of its samplers. */
   shader: string;
   samplers: Record<string, number>;
 }
@@ -32,14 +32,14 @@ export interface DrawnMap {
 const radians = Math.PI / 180;
 /** Milliseconds: where a picture takes longer, there are fewer pixels while the camera moves, and all of them once it rests. */
 const slowPicture = 28, restAfter = 180;
-/** Of the pixels along a side, while it moves. */
+/** The least share of the pixels along a side, while it moves. */
 const roughest = 0.35;
 
 const waterColour = [0.50, 0.69, 0.81], voidColour = [0.894, 0.894, 0.902], stoneColour = [0.66, 0.63, 0.59];
 
 export class Relief {
   readonly camera = new Camera();
-  /** What is drawn now. */
+  /** The mesh that is drawn now. */
   drawn: DrawnMesh | null = null;
   /** Called before each picture, for what follows the camera. Returns true when another picture is due. */
   beforeDrawing: (() => boolean) | null = null;
@@ -70,7 +70,7 @@ export class Relief {
   private air = { haze: [1, 1, 1], zenith: [1, 1, 1], below: [1, 1, 1], hazeDistance: 1 };
   private ramp: readonly [number, number] = [0, 1];
   private pending = false;
-  /** Of a side's pixels; less than 1 while the camera moves and the card is slow. */
+  /** The share of a side's pixels; less than 1 while the camera moves and the card is slow. */
   private sharpness = 1;
   private movingSharpness = 1;
   private restTimer = 0;

@@ -9,6 +9,7 @@ import {
 import { rounded } from './format';
 import type { Frame } from './frame';
 import type { Answer, Progress, Question } from './messages';
+import { measuredInPlan } from './plan';
 import { type Service, costOf, millisecondsOf } from './service';
 import type { TerrainView, ViewEvents } from './terrain_view';
 
@@ -17,7 +18,7 @@ const laterBytes = 256 * 1024;
 const leastBytes = 32 * 1024;
 /** Memory of a question for each vertex that is held and sent, measured: 580. */
 const bytesOfVertex = 700;
-/** Of the time that the service computes, what an answer should take; what it may then differ is left. */
+/** The share of the time that the service computes which an answer should take; what it may then differ is left. */
 const shareOfTime = 0.15;
 /** Times finer than what is there that one answer may be, and least, so that there is an end. */
 const mostFiner = 5, leastFiner = 1.4;
@@ -26,7 +27,7 @@ const firstWait = 1000, longestWait = 20000;
 
 export class ServedView implements TerrainView {
   private shown: Received;
-  /** What is asked for now goes here; after a start anew not `shown` yet. */
+  /** The receiver of what is asked for now; after a start anew not `shown` yet. */
   private received: Received;
   private wanted: Wanted[] = [];
   private leastError = 0;
@@ -34,7 +35,7 @@ export class ServedView implements TerrainView {
   private coarser = 1;
   private isLean = true;
   private wake: (() => void) | null = null;
-  /** Of the next answer: less where the service has not the memory for more. */
+  /** Bytes of the next answer: less where the service has not the memory for more. */
   private mostBytes = laterBytes;
   /** Vertices that the service found too many, nearly. */
   private mostHeld = Infinity;
@@ -111,8 +112,14 @@ export class ServedView implements TerrainView {
     }
   }
 
-  answer(question: Question, frame: Frame): Promise<Answer> {
-    return this.service.answer(question, frame);
+  async answer(question: Question, frame: Frame): Promise<Answer> {
+    try {
+      return await this.service.answer(question, frame);
+    } catch (error) {
+      // A service that has no /volume leaves the plan.
+      if (question.kind === 'area' && error instanceof Problem && error.status === 404) return measuredInPlan(question, frame);
+      throw error;
+    }
   }
 
   private nextWanted(): Wanted | undefined {
@@ -122,7 +129,7 @@ export class ServedView implements TerrainView {
   }
 
   /**
-   * What is asked of a part on the way to what is wanted. The service makes all of the mesh that a receiver has for each answer, and
+   * The next step of a part on the way to what is wanted. The service makes all of the mesh that a receiver has for each answer, and
    * takes the longer the finer it is: so that it need never refuse, one answer is not much finer than what is there.
    */
   private rung(wanted: Wanted): Wanted {

@@ -15,7 +15,7 @@ export function millisecondsOf(response: Response): number | null {
   return took === null ? null : Number(took[1]);
 }
 
-/** What an answer says that it cost: pages read, and time. */
+/** The cost that an answer tells: pages read, and time. */
 export function costOf(response: Response): string {
   const timing = response.headers.get('Server-Timing') ?? '';
   const pages = /\bpages=(\d+)/.exec(timing), milliseconds = /\bdur=([\d.]+)/.exec(timing);
@@ -136,7 +136,7 @@ function lineText(line: Parameters<typeof cornersOf>[0]): string {
   return `LINESTRING(${cornersOf(line).map((p) => `${p.x} ${p.y}`).join(', ')})`;
 }
 
-/** What an answer is certified for; what the service does not know, or does not tell, is null. */
+/** The certainty of an answer; what the service does not know, or does not tell, is null. */
 export function certaintyOf(json: Json): Certainty {
   const told = (value: unknown): number | null => (typeof value === 'number' ? value : null);
   return { of: 'terrain', error: told(json.certified_error), deviation: told(json.certified_deviation), isExact: json.exact === true };

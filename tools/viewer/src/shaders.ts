@@ -3,7 +3,7 @@
 // How the relief is drawn. z is scaled here, so exaggeration costs nothing; slopes and heights are always those of the terrain
 // itself. Light is computed a vertex, since a processor may have to draw.
 
-/** What all programs of places of the scene have. */
+/** Uniforms that all programs of places of the scene have. */
 const seenFrom = /* glsl */ `
 uniform mat4 matrix;
 uniform vec3 eye;

@@ -9,7 +9,7 @@ export class KeptBytes {
   private readonly chunks: Uint8Array[] = [];
   private chunk = 0;
   private offset = 0;
-  /** Of all that came. */
+  /** The bytes of all that came. */
   bytes = 0;
 
   add(bytes: Uint8Array): void {
@@ -18,7 +18,7 @@ export class KeptBytes {
     this.bytes += bytes.length;
   }
 
-  /** What follows the place, as one piece; null when nothing has come yet. */
+  /** The bytes that follow the place, as one piece; null when nothing has come yet. */
   next(): Uint8Array | null {
     const chunk = this.chunks[this.chunk];
     return chunk === undefined ? null : chunk.subarray(this.offset);
@@ -48,7 +48,7 @@ export interface Limits {
 /** A stream that is decoded while it comes, and anew when the limits ask for a coarser mesh than is there. */
 export class StaticStream {
   readonly kept = new KeptBytes();
-  /** Whose mesh is shown. */
+  /** The decoder whose mesh is shown. */
   decoder: Decoder;
   /** Catches up with coarser limits, and then takes the place of `decoder`. */
   private next: Decoder | null = null;

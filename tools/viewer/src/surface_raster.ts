@@ -6,10 +6,10 @@ import { extentOf } from './triangle_grid';
 
 /** Squares along the longer side. */
 const mostColumns = 256;
-/** Of the neighbourhoods that a place is held against, in squares. */
+/** Sizes of the neighbourhoods that a place is held against, in squares. */
 const nearRadius = 3, farRadius = 14;
 
-/** Of the land, by area; scene z. Outliers are too few to matter. */
+/** Heights of the land, by area; scene z. Outliers are too few to matter. */
 export interface Spread {
   /** At 2 and 98 percent: for colours. */
   low: number;

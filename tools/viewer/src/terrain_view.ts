@@ -7,13 +7,13 @@ import type { Answer, Progress, Question } from './messages';
 
 export interface TerrainView {
   readonly name: string;
-  /** Whom to name; empty: nobody told. */
+  /** The attribution; empty: nobody told. */
   readonly attribution: string;
   /** Null where places are told in the CRS alone. */
   readonly lonLat: LonLatNodes | null;
   /** That may be laid over the terrain; null: none. */
   readonly baseMap: BaseMap | null;
-  /** Whose mesh is shown. */
+  /** The decoder whose mesh is shown. */
   readonly decoder: Decoder;
   /** The certificates of the mesh of `decoder`. */
   readonly certified: Certified;
@@ -22,7 +22,7 @@ export interface TerrainView {
   run(): Promise<void>;
   /** The certified error at which to stop; 0: all there is. */
   setLimit(error: number): void;
-  /** What the camera looks at, the coarsest part first. */
+  /** The parts that the camera looks at, the coarsest first. */
   setView(wanted: Wanted[]): void;
   answer(question: Question, frame: Frame): Promise<Answer>;
 }

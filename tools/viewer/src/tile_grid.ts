@@ -25,10 +25,10 @@ function mercator([lon, lat]: Pair): Pair {
 
 export class TileGrid {
   readonly level: number;
-  /** Of the upper left tile; columns go on beyond those that there are, around the Earth. */
+  /** The upper left tile; columns go on beyond those that there are, around the Earth. */
   readonly column: number;
   readonly row: number;
-  /** Of the terrain. */
+  /** The terrain's extent. */
   readonly least: Pair;
   readonly most: Pair;
   /** Finer tiles would show more than the places of the terrain are good for. */
@@ -70,7 +70,7 @@ export class TileGrid {
     return [across * times - this.column, down * times - this.row];
   }
 
-  /** Of a place of the scene. */
+  /** Column and row of a place of the scene. */
   at(x: number, y: number): Pair { return this.fromWorld(mercator(this.degrees(x, y))); }
 
   /** The place of the scene at a column and row, in the terrain or beside it: by steps of Newton's. */
@@ -90,7 +90,7 @@ export class TileGrid {
   }
 
   /**
-   * What the shader finds columns and rows by (shaders, mapTint): degrees as a polynomial, in radians beside those of the middle, since
+   * Numbers by which the shader finds columns and rows (map_shader): degrees as a polynomial, in radians beside those of the middle, since
    * 32 bits hold no degrees; Mercator's ordinate beside the middle's, too.
    */
   get uniforms(): Record<string, readonly number[]> {

@@ -142,7 +142,7 @@ function heightIn(p: Float32Array, a: number, b: number, c: number, x: number, y
   return u < slack || v < slack || w < slack ? null : u * p[a + 2] + v * p[b + 2] + w * p[c + 2];
 }
 
-/** Of a ray to a triangle, from either side (Moeller and Trumbore). */
+/** The share of a ray to a triangle, from either side (Moeller and Trumbore). */
 function shareTo(p: Float32Array, a: number, b: number, c: number, from: Triple, way: Triple): number | null {
   const ex = p[b] - p[a], ey = p[b + 1] - p[a + 1], ez = p[b + 2] - p[a + 2];
   const fx = p[c] - p[a], fy = p[c + 1] - p[a + 1], fz = p[c + 2] - p[a + 2];

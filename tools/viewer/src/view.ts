@@ -8,11 +8,11 @@ import type { Projected } from './projected';
 import { type Camera, difference, lengthOf, sum, type Triple, turnedAround } from './space';
 import type { Spread } from './surface_raster';
 
-/** What the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
+/** The place that the camera looks at on the map, from how far, and in which direction, in metres and degrees. */
 export interface Pose {
   x: number;
   y: number;
-  /** Of the place looked at; in the height's unit. */
+  /** The height of the place looked at, in its unit. */
   height: number;
   distance: number;
   /** Clockwise from north. */
@@ -39,7 +39,7 @@ export interface Point {
 const leastSteps = 150;
 /** Degrees from straight down: near the horizon, and never above it. */
 const mostTilt = 86;
-/** Of the whole terrain: north at the upper left, so that its depth is seen. */
+/** The view of the whole terrain: north at the upper left, so that its depth is seen. */
 const homeHeading = 345, homeTilt = 56;
 /** Milliseconds of a flight. */
 const flightTime = 420;
@@ -258,7 +258,7 @@ export class View {
   /** The level of the ground at a point of the picture. */
   levelAt(point: Point): number { return this.placeAt(point)[2]; }
 
-  /** What the camera goes round, at a point of the picture. */
+  /** The place that the camera goes round, at a point of the picture. */
   pivotAt(point: Point): Triple { return this.placeAt(point); }
 
   /** Goes round a place: degrees that the heading and the tilt grow by. */
@@ -351,7 +351,7 @@ export class View {
   }
 
   /**
-   * What the picture needs: for each octave of distance the part of the terrain that is at most so far, and the error that is
+   * The detail that the picture needs: for each octave of distance the part of the terrain that is at most so far, and the error that is
    * `tolerance` pixels there. The coarsest part first.
    */
   wanted(pixels: number, tolerance: number): Wanted[] {

@@ -60,7 +60,7 @@ class Viewer {
   private isMapped = false;
   /** With which the page was opened. */
   private readonly linkPose = fromHash(location.hash).pose;
-  /** What the link asks, until it is asked: the address soon tells of the page as it is. */
+  /** The question of the link, until it is asked: the address soon tells of the page as it is. */
   private linkAsked = askedInHash(location.hash);
   /** The Worker has opened the terrain. */
   private isOpen = false;

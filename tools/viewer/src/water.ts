@@ -29,7 +29,7 @@ export function kindsOf(mesh: MeshView, facts: Facts): Uint8Array {
   return kinds;
 }
 
-/** Of the terrain's length and of its relief: a triangle that is longer, and not higher above the water at its corner, is water. */
+/** Shares of the terrain's length and of its relief: a triangle that is longer, and not higher above the water at its corner, is water. */
 const longShallow = 0.012, highShallow = 0.03;
 
 /**

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is written over the picture, what links and files ask, and what a service is asked within its limits.
+// Labels over the picture, questions of links and files, and questions to a service within its limits.
 import { type Collection, type Problem, type StreamBody, type Wanted, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

@@ -5,6 +5,8 @@ import { certifiedAt, type Collection, Problem, type Serving, type StreamBody, t
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import type { Frame } from '../src/frame';
+import type { QuestionOf } from '../src/messages';
 import type { Service } from '../src/service';
 import { ServedView } from '../src/served_view';
 import { decoderModule, file, gridded, ptin, terrain } from '../../decoder/test/support';
@@ -18,7 +20,7 @@ const info = JSON.parse(ptin('info', store, '--json')) as { bounds: { min_x: num
 const bounds: Window = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
 const collection: Collection = { title: 'm', bounds, heights: [633, 1576] };
 
-/** What is served: a store, and the most splits of an answer. */
+/** The thing served: a store, and the most splits of an answer. */
 interface Serves {
   path: string;
   collection: Collection;
@@ -207,4 +209,18 @@ test('where the borders of voids alone are nearly too many, or are, there is an 
     assert.ok(asked.length < 25, `${asked.length} requests`);
     assert.deepEqual(faults, []);
   }
+});
+
+test('of a service that has no /volume an area is told in plan, and whatever else it refuses stays refused', async () => {
+  const refusing = (status: number): ServedView => new ServedView(
+    { answer: async () => { throw new Problem('Refused', 'refused by the service', status); } } as unknown as Service, collection, decoderModule(), 1e6,
+    { grown: () => undefined, settled: () => undefined, failed: () => undefined, mended: () => undefined },
+  );
+  const frame = (isDegrees: boolean): Frame => ({ isDegrees, earth: { lengths: { unit: 'metre', metres: 1 } } }) as unknown as Frame;
+  const question: QuestionOf<'area'> = { kind: 'area', ring: [{ x: 9, y: 1 }, { x: 9, y: 4 }, { x: 5, y: 4 }], against: 0 };
+  const told = await refusing(404).answer(question, frame(false)) as { measured: object };
+  assert.deepEqual(told.measured, { surface: 6, empty: 0, cut: null, fill: null, unit: 'metre' });
+  await assert.rejects(refusing(404).answer(question, frame(true)), /has \/volume/);
+  await assert.rejects(refusing(413).answer(question, frame(false)), /refused by the service/);
+  await assert.rejects(refusing(404).answer({ kind: 'height', at: { x: 0, y: 0 } }, frame(false)), /refused by the service/);
 });

@@ -157,7 +157,7 @@ async function wordsSaved(page: Page): Promise<string> {
   return page.evaluate(() => (window as unknown as { words: string[] }).words.join('\n'));
 }
 
-/** What the page says of a preview wherever it says something of the terrain. */
+/** The words for a preview wherever the page says something of the terrain. */
 async function isCalledPreview(page: Page): Promise<void> {
   assert.equal(await counted(page, '#fact-vertices'), 33 * 33);
   assert.equal(await text(page, '#certified'), '\u2013');
@@ -191,7 +191,7 @@ test('of a terrain that certifies nothing for long a preview lies in the page, a
   assert.match(await wordsSaved(page), /preview, not certified/);
   await page.mouse.move(880, 600);
   await until(page, () => /^about \d+[02468] m/.test(document.getElementById('place')!.textContent!));
-  // Of the stream there is more than of the preview now, and still nothing certified.
+  // The stream has more vertices than the preview now, and still nothing certified.
   release();
   await until(page, () => document.title !== 'Terrain');
   await page.mouse.click(880, 600);

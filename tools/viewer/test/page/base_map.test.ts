@@ -86,7 +86,7 @@ interface Point {
 /** The ground at points all over the picture, and what colour it has there. */
 async function groundPoints(page: Page): Promise<Point[]> {
   const places = await page.evaluate(() => {
-    // What lies over the picture is not looked at.
+    // Parts that lie over the picture are not looked at.
     for (const part of document.querySelectorAll<SVGElement | HTMLElement>('main, #labels, #crosshair, footer, #compass, #toast')) part.style.display = 'none';
     const { frame, relief } = window.ptinViewer;
     const found: Array<{ x: number; y: number; mapX: number; mapY: number }> = [];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the tests of the page share: a browser, hosts of the page with a terrain, and what one does on a page.
+// Helpers that the tests of the page share: a browser, hosts of the page with a terrain, and what one does on a page.
 import type { Certificate } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { cpSync, readFileSync } from 'node:fs';
@@ -15,7 +15,7 @@ import { assets, file, ptin, terrain } from '../../../decoder/test/support';
 
 declare global {
   interface Window {
-    /** What the page is made of. */
+    /** The parts of the page. */
     ptinViewer: {
       frame: Frame;
       status: { certificate: Certificate };
@@ -101,7 +101,7 @@ function drawsRoughly(): void {
 
 async function newPage(screen: BrowserContextOptions): Promise<Page> {
   const context = await browser.newContext(screen);
-  // What is waited for may take long: a processor draws, and shares itself with other tests.
+  // Waiting may take long: a processor draws, and shares itself with other tests.
   context.setDefaultTimeout(240000);
   if (screen !== wide && screen !== phone) await context.addInitScript(drawsRoughly);
   const page = await context.newPage();
@@ -163,7 +163,7 @@ export async function colours(page: Page): Promise<number> {
 export const text = (page: Page, selector: string): Promise<string> => page.locator(selector).innerText();
 /** The whole number that a part of the page tells. */
 export const counted = async (page: Page, selector: string): Promise<number> =>
-  // Of parts that are folded away, too.
+  // Parts that are folded away are read, too.
   Number((await page.locator(selector).textContent() ?? '').replace(/[^0-9]/g, ''));
 export const appears = (page: Page, selector: string): Promise<unknown> => page.waitForSelector(`${selector}:not([hidden])`);
 /** The numbers of the answer as they came. */
