@@ -31,30 +31,49 @@ export function kindsOf(mesh: MeshView, facts: Facts): Uint8Array {
 
 /** Shares of the terrain's length and of its relief: a triangle that is longer, and not higher above the water at its corner, is water. */
 const longShallow = 0.012, highShallow = 0.03;
+/** The same length of a triangle that touches only such water: from coast to coast across a sea. Marshes have shorter ones. */
+const acrossSea = 0.06;
+/** Times that such triangles are looked for behind each other. */
+const mostSteps = 8;
 
 /**
  * Between water and coast a coarse mesh has long triangles that rise by little: nearly all of what they cover is water. They become
- * so, too.
+ * so, too, and the still longer ones that touch only them.
  */
-function addShallows({ vertices, triangles, triangleCount }: MeshView, facts: Facts, kinds: Uint8Array): void {
-  const levels = new Map<number, number>();
+function addShallows(mesh: MeshView, facts: Facts, kinds: Uint8Array): void {
+  const { vertices, triangles, triangleCount } = mesh;
+  /** For each corner of water its level. */
+  let levels = new Map<number, number>();
   for (let t = 0, at = 0; t < triangleCount; ++t, at += triangleWords) {
     if (kinds[t] !== water) continue;
     for (let k = 0; k < 3; ++k) levels.set(triangles[at + k], heightOf(facts, vertices[triangles[at] * vertexWords + 2]));
   }
-  const long = longShallow * Math.hypot(facts.maxX - facts.minX, facts.maxY - facts.minY);
+  const whole = Math.hypot(facts.maxX - facts.minX, facts.maxY - facts.minY);
+  for (let n = 0; levels.size > 0 && n < mostSteps; ++n) {
+    levels = turned(mesh, facts, kinds, { levels, long: (n === 0 ? longShallow : acrossSea) * whole });
+  }
+}
+
+/** Turns triangles at corners of water into water where they are long and shallow. Returns the levels of their corners. */
+function turned(
+  { vertices, triangles, triangleCount }: MeshView, facts: Facts, kinds: Uint8Array, from: { levels: ReadonlyMap<number, number>; long: number },
+): Map<number, number> {
+  const found = new Map<number, number>();
   const high = highShallow * (facts.maxHeight - facts.minHeight);
-  for (let t = 0, at = 0; levels.size > 0 && t < triangleCount; ++t, at += triangleWords) {
+  for (let t = 0, at = 0; t < triangleCount; ++t, at += triangleWords) {
     if (kinds[t] !== land) continue;
     const corners = [triangles[at], triangles[at + 1], triangles[at + 2]];
-    const level = corners.map((v) => levels.get(v)).find((l) => l !== undefined);
+    const level = corners.map((v) => from.levels.get(v)).find((l) => l !== undefined);
     if (level === undefined) continue;
     const mean = corners.reduce((sum, v) => sum + heightOf(facts, vertices[v * vertexWords + 2]), 0) / 3;
     const apart = (a: number, b: number): number =>
       Math.hypot(vertices[a * vertexWords] - vertices[b * vertexWords], vertices[a * vertexWords + 1] - vertices[b * vertexWords + 1]);
     const length = Math.max(apart(corners[0], corners[1]), apart(corners[1], corners[2]), apart(corners[2], corners[0]));
-    if (length > long && Math.abs(mean - level) < high) kinds[t] = water;
+    if (length <= from.long || Math.abs(mean - level) >= high) continue;
+    kinds[t] = water;
+    for (const v of corners) found.set(v, level);
   }
+  return found;
 }
 
 /** 1 for each triangle of the surface whose corners have one height. */

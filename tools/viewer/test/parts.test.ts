@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The small parts: numbers for people, permalinks, CSV, kept bytes, windows, frames of degrees, costs.
-import { certifiedAt, type CertifiedPart, certifiedWithin, HostedBytes, toldBy, widened, type Window } from 'ptin-decoder';
+import { certifiedAt, type CertifiedPart, certifiedWithin, type Facts, HostedBytes, none, toldBy, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -16,6 +16,7 @@ import { certaintyOf, costOf } from '../src/service';
 import { heightAlong, runsOf } from '../src/stations';
 import { KeptBytes, StaticStream } from '../src/static_stream';
 import { Ground } from '../src/triangle_grid';
+import { kindsOf, land, water } from '../src/water';
 import { host } from '../../decoder/test/host.mjs';
 import { decoded, decoderModule, gridded, terrain } from '../../decoder/test/support';
 
@@ -310,4 +311,15 @@ test('water is what is flat at 0, or flat, large and below its shores', () => {
   assert.ok(waters(drawnGrid('sea', (r, c) => (c < 12 ? 0 : hills(r, c)))) > 0);
   assert.ok(waters(drawnGrid('lake', (r, c) => (inside(r, c) ? 12 : hills(r, c)))) > 0);
   assert.equal(waters(drawnGrid('plateau', (r, c) => (inside(r, c) ? 80 : hills(r, c)))), 0);
+});
+
+test('a sea that a coarse mesh crosses in long shallow triangles is one, and marshes beside it are land', () => {
+  const corners = [[0, 0, 0], [300, 0, 0], [0, 10, 0], [600, 20, 1], [300, 30, 3], [900, 40, 2], [310, 40, 2], [305, 45, 2], [900, 70, 60]];
+  const triangles = [[0, 1, 2], [1, 3, 4], [3, 5, 4], [6, 7, 4], [5, 8, 3]];
+  const mesh = {
+    vertexCount: corners.length, triangleCount: triangles.length, vertices: Int32Array.from(corners.flatMap((c) => [...c, 0])), classes: new Uint8Array(triangles.length),
+    triangles: Uint32Array.from(triangles.flatMap((t) => [...t, none, none, none])), hasHeight: new Uint8Array(corners.length).fill(1), facts: new Uint8Array(),
+  };
+  const facts = { minX: 0, minY: 0, maxX: 1000, maxY: 100, minHeight: 0, maxHeight: 100, heightIsFloat: 0, heightStep: 1, heightOffset: 0 } as unknown as Facts;
+  assert.deepEqual([...kindsOf(mesh, facts)], [water, water, water, land, land]);
 });
