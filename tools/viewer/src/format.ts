@@ -76,6 +76,8 @@ export function interval(least: number, most: number, sign: string): [string, st
 /** A place of the map, with as many decimals as its unit deserves. */
 export function coordinates(x: number, y: number, isDegrees: boolean, places = 5): string {
   if (!isDegrees) return `${count(x)} E  ${count(y)} N`.replace(/-/g, '\u2212');
+  // A terrain across the antimeridian goes on beyond 180.
+  if (Math.abs(x) > 180) x -= 360 * Math.round(x / 360);
   return `${Math.abs(y).toFixed(places)}° ${y < 0 ? 'S' : 'N'}  ${Math.abs(x).toFixed(places)}° ${x < 0 ? 'W' : 'E'}`;
 }
 

@@ -40,11 +40,15 @@ export interface Peak {
 /** Every fifth of a terrain's contours is bold, and has labels. */
 export const indexStep = 5;
 
+/** Labelled contours in the whole relief, at most. */
+const mostLevels = 500;
+
 /** The pieces of the index contours of a mesh. Cost: its triangles. */
 export function indexContours({ positions: p, corners }: LabelledMesh, frame: Frame, interval: number): ContourPiece[] {
   const step = indexStep * interval;
   const pieces: ContourPiece[] = [];
-  if (!(step > 0)) return pieces;
+  // Lines as close as these are no lines, and no memory holds their pieces.
+  if (!(step * mostLevels > frame.relief / frame.scaleZ)) return pieces;
   for (let t = 0; t < corners.length; t += 3) {
     const v = [3 * corners[t], 3 * corners[t + 1], 3 * corners[t + 2]].sort((a, b) => p[a + 2] - p[b + 2]);
     const [low, middle, high] = v.map((i) => p[i + 2]);

@@ -29,6 +29,8 @@ interface Mark {
 
 export class Marks {
   private all: Mark[] = [];
+  /** How each of them was made, since a card may lose them. */
+  private makers: Array<() => void> = [];
   private made: Record<'line' | 'point' | 'ribbon', Program> | null = null;
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
@@ -45,11 +47,22 @@ export class Marks {
   clear(): void {
     for (const vertices of new Set(this.all.map((mark) => mark.vertices))) vertices.free();
     this.all = [];
+    this.makers = [];
+  }
+
+  /** Makes all anew on a card that lost them. */
+  restore(): void {
+    const { makers } = this;
+    this.made = null;
+    this.all = [];
+    this.makers = [];
+    for (const make of makers) make();
   }
 
   /** `colour`: as CSS has it; `size`: pixels of the page. */
   addPoint(place: Place, colour: string, size: number): void {
     const { gl } = this;
+    this.makers.push(() => { this.addPoint(place, colour, size); });
     const vertices = new Vertices(gl, [{ at: 0, numbers: numbersOf([place]), size: 3 }], null);
     this.add({ vertices, program: this.programs.point, mode: gl.POINTS, colour: pageColour(colour, 1), size, lift: 0.005, isHidden: false, order: 3 });
   }
@@ -57,6 +70,7 @@ export class Marks {
   /** A line through places, which is seen through the terrain, faintly. */
   addLine(places: readonly Place[], colour: string): void {
     const { gl } = this;
+    this.makers.push(() => { this.addLine(places, colour); });
     const common = { vertices: ribbonOf(gl, places), program: this.programs.ribbon, mode: gl.TRIANGLES, size: 2.6 };
     this.add({ ...common, colour: pageColour(colour, 1), lift: 0.0015, isHidden: true, order: 2 });
     this.add({ ...common, colour: pageColour(colour, 0.3), lift: 0, isHidden: false, order: 1 });
@@ -65,6 +79,7 @@ export class Marks {
   /** A translucent surface of triangles. */
   addBody(places: readonly Place[], corners: readonly number[], colour: string): void {
     const { gl } = this;
+    this.makers.push(() => { this.addBody(places, corners, colour); });
     const vertices = new Vertices(gl, [{ at: 0, numbers: numbersOf(places), size: 3 }], new Uint32Array(corners));
     this.add({ vertices, program: this.programs.line, mode: gl.TRIANGLES, colour: pageColour(colour, 0.22), size: 0, lift: 0, isHidden: true, order: 1 });
   }

@@ -45,16 +45,16 @@ export class Relief {
   beforeDrawing: (() => boolean) | null = null;
   pictures = 0;
   readonly gl: WebGL2RenderingContext;
-  private readonly plain: Program;
+  private plain!: Program;
   /** Made when it is needed: compiling takes as long as some pictures. */
   private detailed: Program | null = null;
   private mapped: Program | null = null;
   private map: DrawnMap | null = null;
-  private readonly wall: Program;
-  private readonly sky: Program;
-  private readonly skyVertices: Vertices;
+  private wall!: Program;
+  private sky!: Program;
+  private skyVertices!: Vertices;
   private readonly marks: Marks;
-  private readonly smooth: Smooth;
+  private smooth!: Smooth;
   private ground: Vertices | null = null;
   private walls: Vertices | null = null;
   private edges: Vertices | null = null;
@@ -66,6 +66,7 @@ export class Relief {
   private edgesShown = false;
   private sunNow: Sun = { azimuth: 315, altitude: 42 };
   private drape: WebGLTexture | null = null;
+  private drapePicture: ImageBitmap | null = null;
   private drapeWindow: readonly number[] = [0, 0, 0, 0];
   private air = { haze: [1, 1, 1], zenith: [1, 1, 1], below: [1, 1, 1], hazeDistance: 1 };
   private ramp: readonly [number, number] = [0, 1];
@@ -80,11 +81,17 @@ export class Relief {
     const gl = canvas.getContext('webgl2', { antialias: false, powerPreference: 'high-performance' });
     if (gl === null) throw new Error('no WebGL 2');
     this.gl = gl;
+    this.marks = new Marks(gl);
+    this.prepare();
+  }
+
+  /** Makes what is there before any terrain. */
+  private prepare(): void {
+    const { gl } = this;
     this.plain = new Program(gl, groundVertex, groundFragment(false));
     this.wall = new Program(gl, wallVertex, wallFragment);
     this.sky = new Program(gl, skyVertex, skyFragment);
     this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
-    this.marks = new Marks(gl);
     this.smooth = new Smooth(gl);
     texture(gl, rampUnit, rampPixels(heightStops));
     texture(gl, slopeUnit, rampPixels(slopeStops));
@@ -94,6 +101,16 @@ export class Relief {
     gl.depthFunc(gl.LEQUAL);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.polygonOffset(1, 1);
+  }
+
+  /** Has all on the card again that it lost, but for a base map. */
+  restore(): void {
+    this.detailed = this.mapped = this.ground = this.walls = this.edges = this.map = this.awaited = null;
+    this.prepare();
+    this.marks.restore();
+    if (this.drape !== null) this.drape = texture(this.gl, drapeUnit, this.drapePicture!);
+    if (this.drawn !== null) this.setMesh(this.drawn);
+    this.draw();
   }
 
   setFrame(frame: Frame): void {
@@ -171,6 +188,7 @@ export class Relief {
   setDrape(picture: ImageBitmap | null, window: readonly number[]): void {
     this.gl.deleteTexture(this.drape);
     this.drape = null;
+    this.drapePicture = picture;
     this.drapeWindow = [0, 0, 0, 0];
     if (picture !== null && this.frame !== null) {
       const { frame } = this;

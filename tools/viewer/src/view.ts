@@ -41,6 +41,8 @@ const leastSteps = 150;
 const mostTilt = 86;
 /** The view of the whole terrain: north at the upper left, so that its depth is seen. */
 const homeHeading = 345, homeTilt = 56;
+/** The place looked at is no farther from the middle, in extents of the terrain. */
+const mostAside = 0.6;
 /** Milliseconds of a flight. */
 const flightTime = 420;
 
@@ -141,10 +143,16 @@ export class View {
   private place(pose: Pose): void {
     const { frame, camera } = this;
     if (frame === null) return;
-    this.target = [frame.sceneX(pose.x), frame.sceneY(pose.y), frame.sceneZ(pose.height) * this.factor];
+    // Whatever a link or a key wants, the terrain stays within reach.
+    const clamp = (v: number, least: number, most: number): number => Math.max(least, Math.min(most, v));
+    const { width, depth, relief } = frame;
+    this.target = [
+      clamp(frame.sceneX(pose.x), -mostAside * width, mostAside * width), clamp(frame.sceneY(pose.y), -mostAside * depth, mostAside * depth),
+      clamp(frame.sceneZ(pose.height), -relief, 2 * relief) * this.factor,
+    ];
     camera.heading = pose.heading * radians;
     camera.tilt = Math.max(0, Math.min(mostTilt, pose.tilt)) * radians;
-    camera.position = sum(this.target, camera.forward, -pose.distance);
+    camera.position = sum(this.target, camera.forward, -clamp(pose.distance, this.leastDistance, this.mostDistance));
   }
 
   /** The pose now. */
@@ -248,9 +256,8 @@ export class View {
     this.flight = null;
     const [x, y] = difference(this.onPlane(camera.ray(from.x, from.y), z), this.onPlane(camera.ray(to.x, to.y), z));
     const clamp = (v: number, most: number): number => Math.max(-most, Math.min(most, v));
-    const most = 0.6;
     this.move([
-      clamp(this.target[0] + x, most * frame.width) - this.target[0], clamp(this.target[1] + y, most * frame.depth) - this.target[1], 0,
+      clamp(this.target[0] + x, mostAside * frame.width) - this.target[0], clamp(this.target[1] + y, mostAside * frame.depth) - this.target[1], 0,
     ]);
     this.changed();
   }

@@ -397,9 +397,7 @@ class Viewer {
     const recolour = (): void => { this.relief.setAir(colour('haze'), colour('sky-top'), colour('ground-low')); };
     dark.addEventListener('change', recolour);
     recolour();
-    canvas.addEventListener('webglcontextlost', () => {
-      this.boot.trouble('The picture is lost', 'The graphics card gave up on it. Reload the page.', true);
-    });
+    this.followCard(canvas);
     addEventListener('hashchange', () => {
       const { pose, settings } = fromHash(location.hash);
       const { panel } = this;
@@ -424,6 +422,28 @@ class Viewer {
     });
     part('help').addEventListener('click', () => { part<HTMLDialogElement>('keys').showModal(); });
     part('trouble-close').addEventListener('click', () => { part('trouble').hidden = true; });
+  }
+
+  /** A card may lose all that it has, and come back: after sleep, or when many pages want it. */
+  private followCard(canvas: HTMLCanvasElement): void {
+    canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault();
+      this.boot.trouble('The picture is lost', 'The graphics card gave up on it. It comes back when the card does; otherwise reload the page.', true);
+    });
+    canvas.addEventListener('webglcontextrestored', () => {
+      part('trouble').hidden = true;
+      this.relief.restore();
+      if (!this.isMapped) return;
+      void this.showMap(false);
+      void this.showMap(true);
+    });
+    const followPixels = (): void => {
+      matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {
+        this.relief.draw();
+        followPixels();
+      }, { once: true });
+    };
+    followPixels();
   }
 
   private followPointer(canvas: HTMLCanvasElement): void {

@@ -30,6 +30,7 @@ test('numbers', () => {
   assert.equal(height(907.123, 13.3, 'm'), '907 m');
   assert.equal(height(907.123, 0, 'm'), '907.12 m');
   assert.equal(coordinates(-118.25, -34.5, true), '34.50000° S  118.25000° W');
+  assert.equal(coordinates(181.25, -16, true), '16.00000° S  178.75000° W', 'across the antimeridian');
   assert.equal(roundBelow(730), 500);
   assert.equal(roundBelow(0.2), 0.2);
 });

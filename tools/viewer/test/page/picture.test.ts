@@ -135,6 +135,30 @@ test('the picture and the camera', (t) => onPage(`${fast.url}#error=20`, async (
   });
 }));
 
+test('a link that wants the impossible shows the terrain, and a card that loses its picture gets it back', () =>
+  onPage(`${fast.url}#error=20&interval=0.000001&at=1e300,-1e300,1e300,1e300,30,40`, async (page) => {
+    await complete(page);
+    const { x, y, distance } = await page.evaluate(() => window.ptinViewer.view.current);
+    assert.ok([x, y, distance].every((n) => Math.abs(n) < 1e7), `${x} ${y} ${distance}`);
+    for (let i = 0; i < 60; ++i) await page.keyboard.press('ArrowLeft');
+    await page.evaluate(() => { location.hash = 'interval=50&at=380000,3803000,1000,9000,0,30'; });
+    await rested(page);
+    await page.mouse.click(640, 380);
+    await appears(page, '#answer');
+    await rested(page);
+    const before = await pictureOf(page);
+    const card = await page.evaluateHandle(() => {
+      const lost = document.querySelector<HTMLCanvasElement>('#relief')!.getContext('webgl2')!.getExtension('WEBGL_lose_context')!;
+      lost.loseContext();
+      return lost;
+    });
+    await appears(page, '#trouble');
+    await card.evaluate((lost) => { lost.restoreContext(); });
+    await page.waitForSelector('#trouble[hidden]', { state: 'attached' });
+    await rested(page);
+    assert.ok(before.equals(await pictureOf(page)), 'the same picture, with its mark');
+  }, { mayComplain: true }));
+
 test('nothing is wider than a phone, and axe finds no fault', async () => {
   for (const screen of [phone, quick]) {
     await onPage(`${fast.url}#error=20`, async (page) => {
@@ -146,6 +170,17 @@ test('nothing is wider than a phone, and axe finds no fault', async () => {
         return box.width > 1 && box.height > 1 && (box.left < -1 || box.right > innerWidth + 1);
       }).map((e) => e.outerHTML.slice(0, 80)));
       assert.deepEqual(over, []);
+      if (screen === quick) {
+        // Somebody's letters are twice as large.
+        const cut = await page.evaluate(() => {
+          document.documentElement.style.fontSize = '28px';
+          const found = [...document.querySelectorAll<HTMLElement>('#tools label, .segments span')].filter((e) => e.scrollWidth > e.clientWidth + 1);
+          const last = document.getElementById('tools')!.getBoundingClientRect();
+          document.documentElement.style.fontSize = '';
+          return [...found.map((e) => e.innerText), ...(last.right > innerWidth ? ['tools'] : [])];
+        });
+        assert.deepEqual(cut, []);
+      }
       // As the page's policy lets no script of another place in.
       await page.evaluate(readFileSync(process.env.PTIN_AXE!, 'utf8'));
       assert.deepEqual(await faultsOfAxe(page), []);
