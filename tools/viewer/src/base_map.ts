@@ -47,6 +47,8 @@ export class BaseMap {
   private side = 256;
   private isOver = false;
   private hasTold = false;
+  /** Why the last tile failed; empty: none did. */
+  private why = '';
 
   constructor(
     private readonly gl: WebGL2RenderingContext, private readonly grid: TileGrid, private readonly told: Told, private readonly events: MapEvents,
@@ -124,6 +126,7 @@ export class BaseMap {
     this.count(tile)[1]++;
     this.textures.put(this.freeLayer(tile), picture);
     this.textures.setTree(treeOf(this.layers));
+    this.tellMissing();
     this.events.drawn({ uniforms: this.grid.uniforms, shader: mapText, samplers: TileTextures.samplers });
   }
 
@@ -158,8 +161,14 @@ export class BaseMap {
     }
     // The map ends above this level.
     if (isBarren) this.finest = Math.min(this.finest, this.grid.level + tile.up - 1);
-    if (this.hasTold || this.layers.size === 0) return;
+    this.why = why;
+    this.tellMissing();
+  }
+
+  /** Tells once that some tiles failed, when there are others. */
+  private tellMissing(): void {
+    if (this.hasTold || this.why === '' || this.layers.size === 0) return;
     this.hasTold = true;
-    this.events.failed(`Some tiles of ${this.host} are missing, coarser ones stand for them: ${why}`);
+    this.events.failed(`Some tiles of ${this.host} are missing, coarser ones stand for them: ${this.why}`);
   }
 }

@@ -40,20 +40,20 @@ export interface Peak {
 /** Every fifth of a terrain's contours is bold, and has labels. */
 export const indexStep = 5;
 
-/** Labelled contours in the whole relief, at most. */
-const mostLevels = 500;
+/** Pieces of index contours, at most: lines as close as those of more are no lines, and have no labels. */
+const mostPieces = 1e6;
 
 /** The pieces of the index contours of a mesh. Cost: its triangles. */
 export function indexContours({ positions: p, corners }: LabelledMesh, frame: Frame, interval: number): ContourPiece[] {
   const step = indexStep * interval;
   const pieces: ContourPiece[] = [];
-  // Lines as close as these are no lines, and no memory holds their pieces.
-  if (!(step * mostLevels > frame.relief / frame.scaleZ)) return pieces;
+  if (!(step > 0)) return pieces;
   for (let t = 0; t < corners.length; t += 3) {
     const v = [3 * corners[t], 3 * corners[t + 1], 3 * corners[t + 2]].sort((a, b) => p[a + 2] - p[b + 2]);
     const [low, middle, high] = v.map((i) => p[i + 2]);
     if (!(high > low)) continue;
     for (let k = Math.ceil(frame.heightAt(low) / step); k * step < frame.heightAt(high); ++k) {
+      if (pieces.length >= mostPieces) return [];
       const z = frame.sceneZ(k * step);
       if (z <= low) continue;
       const on = (a: number, b: number): [number, number] => {

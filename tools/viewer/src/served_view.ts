@@ -169,7 +169,7 @@ export class ServedView implements TerrainView {
     return high - low;
   }
 
-  /** Asks for a part, once. A failure waits before the next attempt; what came before stays. */
+  /** Asks for a part, once. A failure waits before the next attempt; what came before stays. Throws where the terrain is another one. */
   private async bring(wanted: Wanted, mostBytes: number): Promise<void> {
     const to = this.received;
     if (to.have.length >= mostServings) {
@@ -184,11 +184,21 @@ export class ServedView implements TerrainView {
       this.failures = 0;
       this.waitsFor = undefined;
     } catch (error) {
+      // The page's frame is of the terrain that there was.
+      if (error instanceof Problem && [400, 409].includes(error.status) && await this.isReplaced().catch(() => false)) {
+        throw new Problem('The terrain was replaced', 'The service has another one under this name now; reload the page.', error.status);
+      }
       if (this.mends(error, wanted, to)) return;
       if (error instanceof DecodeError) this.startAnew();
       await this.waitAfter(error);
     }
     if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > Math.min(this.mostVertices, this.mostHeld)) this.makeRoom(to, wanted);
+  }
+
+  /** Whether the service has a terrain of other bounds or heights now. */
+  private async isReplaced(): Promise<boolean> {
+    const { bounds, heights } = await this.service.collection();
+    return String([bounds, heights]) !== String([this.collection.bounds, this.collection.heights]);
   }
 
   /** A service that is busy is waited for as it asks; of one that cannot be reached people are told. */

@@ -428,14 +428,13 @@ class Viewer {
   private followCard(canvas: HTMLCanvasElement): void {
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault();
+      void this.showMap(false);
       this.boot.trouble('The picture is lost', 'The graphics card gave up on it. It comes back when the card does; otherwise reload the page.', true);
     });
     canvas.addEventListener('webglcontextrestored', () => {
       part('trouble').hidden = true;
       this.relief.restore();
-      if (!this.isMapped) return;
-      void this.showMap(false);
-      void this.showMap(true);
+      void this.showMap(this.panel.settings.shading === 'map');
     });
     const followPixels = (): void => {
       matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {

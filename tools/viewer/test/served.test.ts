@@ -25,17 +25,20 @@ interface Serves {
   path: string;
   collection: Collection;
   mostSplits?: number;
+  /** The terrain that the service tells of when it is asked again. */
+  now?: Collection;
 }
 
 /** A view of a terrain, and what was asked for it. `refuses` may throw before an answer. */
 function served(
   mostVertices: number, refuses: (asked: Asked, mostBytes: number) => void = () => undefined,
-  { path, collection: about, mostSplits }: Serves = { path: store, collection },
+  { path, collection: about, mostSplits, now = about }: Serves = { path: store, collection },
 ): { view: ServedView; asked: Asked[]; faults: unknown[]; settled: () => Promise<void> } {
   const asked: Asked[] = [];
   const faults: unknown[] = [];
   let wake: (() => void) | null = null;
   const service = {
+    collection: async (): Promise<Collection> => now,
     async stream({ window, error = 0, max_bytes, have = [] }: StreamBody): Promise<Response> {
       const wanted: Wanted = { window, error };
       asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
@@ -170,6 +173,20 @@ test('refusals are mended: a replaced file begins anew, too much becomes less', 
   await settled();
   assert.equal(view.progress.heldBy, 'service');
   assert.deepEqual(faults, []);
+});
+
+test('a terrain that another one took the place of is told to be so, and nothing of the other is drawn', async () => {
+  for (const status of [400, 409]) {
+    const { view, asked, settled } = served(1e6, (a) => {
+      if (a.have.length !== 0) throw new Problem('Refused', 'this misses the terrain, or it was replaced', status);
+    }, { path: store, collection, now: { ...collection, bounds: [0, 0, 1, 1] } });
+    const ended = view.run();
+    await settled();
+    const before = asked.length;
+    view.setView([{ window: bounds, error: 5 }]);
+    await assert.rejects(ended, /another one under this name now; reload the page/);
+    assert.equal(asked.length, before + 1);
+  }
 });
 
 /** A terrain with voids of a sample each, whose borders come in several answers: before no error is finite. */
