@@ -11,8 +11,8 @@ namespace ptin::serve {
 
 /// Reads a configuration into `options`: `listen`, `threads`, `public_url`, `cors`, `base_map`,
 /// `base_map_attribution` (neither is checked: check_base_map()), `token_file`, `files` (true or false),
-/// `metrics`, `trusted_proxies` (addresses between commas), a table [collections] of NAME = "FILE", where a name that is no path from the root counts
-/// from the folder of the configuration, and a table [limits].
+/// `metrics`, `trusted_proxies` (addresses between commas), a table [collections] of NAME = "FILE", where a name
+/// that is no path from the root counts from the folder of the configuration, and a table [limits].
 /// @throws Error not_found, io_error
 ///               invalid_argument  no TOML; a name that means nothing here (named, with those that
 ///                                 do)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A map of somebody else over the terrain: asks for the tiles that the picture wants, a few at once, and keeps a bounded number of them
-// on the card. This file is fetched when the user turns the map
-// on; before that nobody is asked for anything.
+// on the card. This file is fetched when the user turns the map on; before that nobody is asked for anything.
 import type { BaseMap as Told } from 'ptin-decoder';
 import { mapText } from './map_shader';
 import { nameOf, type Tile, type TileSight, treeOf, wantedTiles } from './map_tiles';
