@@ -81,14 +81,40 @@ export async function onPage(
   address: string, use: (page: Page) => Promise<void>, { screen = quick, mayComplain = false }: OnPage = {},
 ): Promise<void> {
   const page = screen === quick ? kept ??= await newPage(quick) : await newPage(screen);
+  const wasKept = page === kept;
+  // A page is kept only where its test went well: one that no longer answers would stop all tests after it.
+  kept = null;
   faults = [];
   try {
     await page.goto(address);
-    await use(page);
+    await within(10, use(page));
     if (!mayComplain) assert.deepEqual(faults, []);
+    if (wasKept) {
+      await within(1, page.goto('about:blank'));
+      kept = page;
+    }
   } finally {
-    await (page === kept ? page.goto('about:blank') : page.context().close());
+    if (page !== kept) await closed(page);
   }
+}
+
+/** Closes a page, or the whole browser where that does not answer: its test has failed, and the next one goes on. */
+async function closed(page: Page): Promise<void> {
+  try {
+    await within(1, page.context().close());
+  } catch {
+    void browser.close();
+    browser = await launched();
+  }
+}
+
+/** What comes of something within some minutes; fails after them, since a page whose code never ends answers nothing. */
+async function within<T>(minutes: number, done: Promise<T>): Promise<T> {
+  let timer: NodeJS.Timeout;
+  const late = new Promise<never>((_, reject) => {
+    timer = setTimeout(() => { reject(new Error(`the page does not answer within ${minutes} min`)); }, 60000 * minutes);
+  });
+  return Promise.race([done, late]).finally(() => { clearTimeout(timer); });
 }
 
 /** Has the pictures of a document drawn without smooth edges, each of which costs four samples a pixel. */
