@@ -83,7 +83,7 @@ export async function onPage(
   const page = screen === quick ? kept ??= await newPage(quick) : await newPage(screen);
   const wasKept = page === kept;
   // A page is kept only where its test went well: one that no longer answers would stop all tests after it.
-  kept = null;
+  if (wasKept) kept = null;
   faults = [];
   try {
     await page.goto(address);
@@ -103,7 +103,9 @@ async function closed(page: Page): Promise<void> {
   try {
     await within(1, page.context().close());
   } catch {
-    void browser.close();
+    kept = null;
+    // Its end is not waited for, and whether it ends well says nothing of the page.
+    browser.close().catch(() => undefined);
     browser = await launched();
   }
 }
