@@ -20,7 +20,7 @@ export interface Picture {
   /** The place of the terrain under a point of the picture, CSS pixels; null: none. */
   pick(x: number, y: number): Place | null;
   /** How far a place is from the camera. */
-  depth(place: Place): number;
+  distance(place: Place): number;
   /** The part of the terrain that is seen. */
   window(): Window | null;
   interval(): number;
@@ -99,6 +99,6 @@ export class Overlay {
     const y = label.kind === 'peak' ? label.y + 2 : label.y;
     const place = this.picture.pick(label.x, y);
     if (place === null) return label.kind === 'peak';
-    return this.picture.depth(place) > 0.97 * this.picture.depth(label.of);
+    return this.picture.distance(place) > 0.97 * this.picture.distance(label.of);
   }
 }

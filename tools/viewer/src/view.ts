@@ -4,6 +4,7 @@
 import type { Wanted, Window } from 'ptin-decoder';
 import { windowAround } from 'ptin-decoder/values';
 import type { Frame } from './frame';
+import type { Place } from './marks';
 import type { Projected } from './projected';
 import { type Camera, difference, lengthOf, sum, type Triple, turnedAround } from './space';
 import type { Spread } from './surface_raster';
@@ -311,6 +312,9 @@ export class View {
     return ([west, south, east, north]) =>
       camera.mayMeet([frame.sceneX(west), frame.sceneY(south), 0], [frame.sceneX(east), frame.sceneY(north), top]);
   }
+
+  /** How far a place of the scene, without exaggeration, is from the camera. */
+  distanceTo({ x, y, z }: Place): number { return lengthOf(difference(this.camera.position, [x, y, z * this.factor])); }
 
   /**
    * Where a place of the scene, without exaggeration, is on the page's canvas, in pixels; `visible`: it is in the picture. What may

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The page: ties the Worker, the relief, the camera and the controls together. Nothing runs while nothing changes.
-import type { BaseMap as ToldMap, Certificate, Problem } from 'ptin-decoder';
-import { certifiedAt, certifiedWithin, holds } from 'ptin-decoder/values';
-import type { BaseMap } from './base_map';
+import type { Certificate, Problem } from 'ptin-decoder';
+import { certifiedWithin, holds } from 'ptin-decoder/values';
 import { Compass } from './compass';
 import { type DrawnMesh, drawnMesh, surfaceEnd } from './drawn_mesh';
 import { scaleAt } from './earth';
@@ -12,19 +11,21 @@ import { bytes, metres, roundBelow, rounded } from './format';
 import { Frame } from './frame';
 import { Gestures } from './gestures';
 import { Inquiry } from './inquiry';
+import { followKeys } from './keys';
 import { lineInFile } from './lines_in_file';
 import type { Boot, FromWorker, Status, ToWorker } from './messages';
 import { colour, part, speak, toast } from './page';
+import { OfferedMap } from './offered_map';
 import { Overlay } from './overlay';
 import { Panel } from './panel';
 import { Peaks } from './peaks';
 import { askedInHash, askedToHash, type Settings, fromHash, toHash } from './permalink';
 import { savePicture } from './picture_export';
-import { type Place, Relief } from './relief';
+import { Pointing } from './pointing';
+import { Relief } from './relief';
 import { Service } from './service';
-import { difference, lengthOf } from './space';
-import { TileGrid } from './tile_grid';
 import { usualExaggeration, View } from './view';
+import { welcome } from './welcome';
 
 /** Vertices of a mesh whose heights are spread as the terrain's are. */
 const enoughToTell = 200;
@@ -38,6 +39,7 @@ class Viewer {
   private readonly inquiry: Inquiry;
   private readonly overlay: Overlay;
   private readonly compass: Compass;
+  private readonly baseMap: OfferedMap;
   private worker: Worker | null;
   /** For the Worker, until it is begun. */
   private readonly unsent: ToWorker[] = [];
@@ -52,12 +54,6 @@ class Viewer {
   private spokenState = '';
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
-  private placeTimer = 0;
-  private mapTimer = 0;
-  /** A base map that may be shown, and the one that is. */
-  private offered: { told: ToldMap; grid: TileGrid } | null = null;
-  private baseMap: BaseMap | null = null;
-  private isMapped = false;
   /** With which the page was opened. */
   private readonly linkPose = fromHash(location.hash).pose;
   /** The question of the link, until it is asked: the address soon tells of the page as it is. */
@@ -76,6 +72,7 @@ class Viewer {
     new Gestures(canvas, this.view);
     this.compass = new Compass(() => { this.view.turnNorth(); });
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
+    this.baseMap = new OfferedMap(this.relief, this.view, this.panel);
     this.inquiry = this.madeInquiry();
     this.overlay = this.madeOverlay();
     part('viewshed-tool').hidden = !this.isServed;
@@ -83,10 +80,21 @@ class Viewer {
     this.relief.beforeDrawing = () => this.beforeDrawing();
     this.view.changed = () => { this.moved(); };
     this.followPage(canvas);
-    this.followPointer(canvas);
-    addEventListener('keydown', (event) => { this.key(event); });
+    this.followKeys(canvas);
     if (boot.hasPicture === true) this.showFirst();
     else this.listen();
+  }
+
+  private followKeys(canvas: HTMLCanvasElement): void {
+    const { relief, view, panel, inquiry, isServed } = this;
+    const pointing = new Pointing(relief, panel, inquiry, () => {
+      const { frame, status } = this;
+      return frame === null || status === null ? null : { frame, certified: status.certified };
+    });
+    followKeys({
+      canvas, view, panel, inquiry, pointing, isServed, isMapThere: () => this.baseMap.isThere,
+      savePicture: () => { this.savePicture(); }, copyLink: () => { void this.copyLink(); }, moved: () => { this.moved(); },
+    });
   }
 
   private listen(): void {
@@ -142,14 +150,10 @@ class Viewer {
     const service = source?.kind === 'collection' ? new Service(source.service, source.id) : null;
     return new Overlay({
       canvas: this.relief.canvas, frame: () => this.frame, project: ({ x, y, z }) => this.view.project(x, y, z),
-      pick: (x, y) => this.relief.pick(x, y), depth: (place) => this.depth(place),
+      pick: (x, y) => this.relief.pick(x, y), distance: (place) => this.view.distanceTo(place),
       window: () => this.view.wanted(this.relief.canvas.clientHeight, tolerance)[0]?.window ?? null,
       interval: () => this.panel.settings.interval,
     }, service === null ? null : new Peaks((window) => service.highest(window)));
-  }
-
-  private depth({ x, y, z }: Place): number {
-    return lengthOf(difference(this.relief.camera.position, [x, y, z * this.view.exaggeration]));
   }
 
   private send(message: ToWorker): void {
@@ -205,65 +209,10 @@ class Viewer {
       this.view.setFrame(frame);
       this.poseOfLink();
     }
-    if (about.baseMap !== null) this.offer(about.baseMap, frame);
+    if (about.baseMap !== null) this.baseMap.offer(about.baseMap, frame);
     this.moved();
     this.isOpen = true;
     this.followLink();
-  }
-
-  private offer(told: ToldMap, frame: Frame): void {
-    const grid = TileGrid.of(frame);
-    this.offered = grid === null ? null : { told, grid };
-    this.panel.offerMap(grid !== null ? ''
-      : frame.lonLatAt({ x: frame.middleX, y: frame.middleY }) === null ? 'No map: nobody tells where on Earth this terrain is.'
-      : 'No map: Web Mercator ends at 85 degrees of latitude.');
-  }
-
-  /** Shows the base map or takes it away; only while it is shown its host is asked. */
-  private async showMap(isShown: boolean): Promise<void> {
-    const { offered } = this;
-    if (!isShown || offered === null) {
-      this.baseMap?.close();
-      if (this.isMapped) this.panel.showMap('', '');
-      this.baseMap = null;
-      this.isMapped = false;
-      return;
-    }
-    if (this.isMapped) return;
-    this.isMapped = true;
-    const credit = offered.told.attribution || new URL(offered.told.tiles).host;
-    const failed = (what: string): void => {
-      this.panel.showMap(credit, what);
-      toast(what);
-    };
-    this.panel.showMap(credit, '');
-    try {
-      const made = await import('./base_map');
-      if (!this.isMapped || this.baseMap !== null) return;
-      this.baseMap = new made.BaseMap(this.relief.gl, offered.grid, offered.told, { drawn: (drawn) => { this.relief.baseMap = drawn; }, failed });
-      this.relief.draw();
-    } catch {
-      failed('base_map.js cannot be had');
-    }
-  }
-
-  /** Some time after a picture: what tiles it lacks. */
-  private followMap(): void {
-    if (this.baseMap === null || this.mapTimer !== 0) return;
-    this.mapTimer = window.setTimeout(() => {
-      this.mapTimer = 0;
-      const { relief, view, frame } = this;
-      if (frame === null) return;
-      const top = frame.relief * view.exaggeration, pixels = relief.canvas.clientHeight * Math.min(devicePixelRatio, 2);
-      this.baseMap?.follow({
-        mayMeet: (west, south, east, north) => relief.camera.mayMeet([west, south, 0], [east, north, top]),
-        sharpness: (west, south, east, north) => {
-          const [cameraX, cameraY] = relief.camera.position;
-          const x = Math.max(west, Math.min(east, cameraX)), y = Math.max(south, Math.min(north, cameraY));
-          return 1 / view.metresPerPixel(Math.max(view.leastDistance, this.depth({ x, y, z: relief.groundAt(x, y) ?? 0 })), pixels);
-        },
-      });
-    }, 150);
   }
 
   private poseOfLink(): void {
@@ -323,7 +272,7 @@ class Viewer {
     const s = this.panel.settings;
     if (key === 'shading') {
       this.relief.shading = s.shading;
-      void this.showMap(s.shading === 'map');
+      void this.baseMap.show(s.shading === 'map');
     }
     if (key === 'azimuth' || key === 'altitude') this.relief.sun = s;
     if (key === 'interval') this.relief.isolines = s.interval;
@@ -340,7 +289,7 @@ class Viewer {
     if (current !== null) this.compass.show(current.heading, current.tilt);
     this.showScale(distance);
     this.overlay.drawn();
-    this.followMap();
+    this.baseMap.follow();
     if (this.status !== null) {
       const before = this.status.certificate;
       const now = this.status.certificate = this.inSight(this.status);
@@ -408,7 +357,7 @@ class Viewer {
       if (pose !== null) this.view.pose(pose);
       this.moved();
     });
-    part('home').addEventListener('click', () => { this.home(); });
+    part('home').addEventListener('click', () => { this.view.flyHome(); });
     part('link').addEventListener('click', () => { void this.copyLink(); });
     part('picture').addEventListener('click', () => { this.savePicture(); });
     part<HTMLAnchorElement>('whole').addEventListener('focus', () => { this.linkWhole(); });
@@ -428,13 +377,13 @@ class Viewer {
   private followCard(canvas: HTMLCanvasElement): void {
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault();
-      void this.showMap(false);
+      void this.baseMap.show(false);
       this.boot.trouble('The picture is lost', 'The graphics card gave up on it. It comes back when the card does; otherwise reload the page.', true);
     });
     canvas.addEventListener('webglcontextrestored', () => {
       part('trouble').hidden = true;
       this.relief.restore();
-      void this.showMap(this.panel.settings.shading === 'map');
+      void this.baseMap.show(this.panel.settings.shading === 'map');
     });
     const followPixels = (): void => {
       matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {
@@ -443,57 +392,6 @@ class Viewer {
       }, { once: true });
     };
     followPixels();
-  }
-
-  private followPointer(canvas: HTMLCanvasElement): void {
-    let pressed: { x: number; y: number } | null = null;
-    canvas.addEventListener('pointerdown', (e) => {
-      pressed = e.isPrimary && e.button === 0 ? { x: e.clientX, y: e.clientY } : null;
-      canvas.classList.remove('ringed');
-    });
-    canvas.addEventListener('pointerup', (e) => {
-      const isClick = pressed !== null && Math.hypot(e.clientX - pressed.x, e.clientY - pressed.y) < 5;
-      pressed = null;
-      part('crosshair').hidden = true;
-      if (isClick) this.inquiry.click(this.relief.pick(e.clientX, e.clientY));
-    });
-    // A place is told where the pointer rests: numbers that run are not read.
-    canvas.addEventListener('pointermove', (e) => {
-      clearTimeout(this.placeTimer);
-      part('crosshair').hidden = true;
-      if (e.pointerType === 'touch' || e.buttons !== 0) return;
-      this.placeTimer = window.setTimeout(() => { this.tellPlace(e.clientX, e.clientY); }, 160);
-    });
-    canvas.addEventListener('pointerleave', () => {
-      clearTimeout(this.placeTimer);
-      this.panel.showPlace(null);
-    });
-    // A ring shows whom the keys belong to, when one came here by them; shortcuts work without it.
-    canvas.addEventListener('focus', () => { canvas.classList.toggle('ringed', canvas.matches(':focus-visible')); });
-    canvas.addEventListener('blur', () => { canvas.classList.remove('ringed'); });
-  }
-
-  private tellPlace(x: number, y: number): void {
-    if (this.frame === null || this.status === null) return;
-    const { frame, status } = this;
-    const place = this.relief.pick(x, y);
-    if (place === null) {
-      this.panel.showPlace({ where: '', height: null, slack: null });
-      return;
-    }
-    const at = { x: frame.mapX(place.x), y: frame.mapY(place.y) };
-    const certificate = certifiedAt(status.certified, [at]);
-    this.panel.showPlace({
-      where: frame.where(at), height: frame.heightAt(place.z), slack: certificate?.deviation ?? null,
-    });
-  }
-
-  /** Puts the cross-hair of the keys into the middle, and tells what is there. */
-  private aim(): void {
-    part('crosshair').hidden = false;
-    clearTimeout(this.placeTimer);
-    const { clientWidth, clientHeight } = this.relief.canvas;
-    this.placeTimer = window.setTimeout(() => { this.tellPlace(clientWidth / 2, clientHeight / 2); }, 160);
   }
 
   /** In a frame: the link to the same view with its card. */
@@ -526,10 +424,6 @@ class Viewer {
     }
   }
 
-  private home(): void {
-    this.view.flyHome();
-  }
-
   private async copyLink(): Promise<void> {
     try {
       await navigator.clipboard.writeText(location.origin + this.address);
@@ -538,87 +432,6 @@ class Viewer {
       toast('The browser does not let pages copy; the address line has the link');
     }
   }
-
-  private key(event: KeyboardEvent): void {
-    const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey || part<HTMLDialogElement>('keys').open) return;
-    if (target.matches('input[type=number], input[type=text]') && event.key !== 'Escape') return;
-    if (/^(Arrow|Page)/.test(event.key) && target.matches('input')) return;
-    if (event.key === 'Enter' && target !== this.relief.canvas) return;
-    const action = this.actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-    if (action === undefined) return;
-    event.preventDefault();
-    action();
-    if (/^(Arrow|Enter|Page|Back)|^[-+=,.]$/.test(event.key)) this.aim();
-    if (!['?', 'Enter', 'Escape', 'Backspace'].includes(event.key)) this.moved();
-  }
-
-  private readonly actions: Record<string, () => void> = {
-    ArrowLeft: () => { this.view.pan(-1, 0); },
-    ArrowRight: () => { this.view.pan(1, 0); },
-    ArrowUp: () => { this.view.pan(0, 1); },
-    ArrowDown: () => { this.view.pan(0, -1); },
-    '+': () => { this.view.zoom(0.8); },
-    '=': () => { this.view.zoom(0.8); },
-    '-': () => { this.view.zoom(1.25); },
-    PageUp: () => { this.view.tilt(-5); },
-    PageDown: () => { this.view.tilt(5); },
-    ',': () => { this.view.turn(-10); },
-    '.': () => { this.view.turn(10); },
-    r: () => { this.home(); },
-    n: () => { this.view.turnNorth(); },
-    w: () => { this.panel.set('wireframe', !this.panel.settings.wireframe); },
-    i: () => { this.panel.set('interval', this.panel.settings.interval > 0 ? 0 : this.panel.usualInterval); },
-    1: () => { this.panel.set('shading', 'height'); },
-    2: () => { this.panel.set('shading', 'slope'); },
-    3: () => { this.panel.set('shading', 'shade'); },
-    4: () => { if (this.offered !== null) this.panel.set('shading', 'map'); },
-    h: () => { this.inquiry.choose('height'); },
-    p: () => { this.inquiry.choose('profile'); },
-    s: () => { this.inquiry.choose('sight'); },
-    v: () => { if (this.isServed) this.inquiry.choose('viewshed'); },
-    a: () => { this.inquiry.choose('area'); },
-    e: () => { this.savePicture(); },
-    Backspace: () => { this.inquiry.back(); },
-    l: () => { void this.copyLink(); },
-    '?': () => { part<HTMLDialogElement>('keys').showModal(); },
-    Enter: () => {
-      const { clientWidth, clientHeight } = this.relief.canvas;
-      this.inquiry.click(this.relief.pick(clientWidth / 2, clientHeight / 2));
-    },
-    Escape: () => { this.inquiry.close(); },
-  };
-}
-
-/** Where no terrain was named. */
-function welcome(boot: Boot): void {
-  const box = part('welcome');
-  box.hidden = false;
-  part('card').hidden = part('tools').hidden = true;
-  const form = box.querySelector('form')!;
-  form.addEventListener('submit', (event) => {
-    event.preventDefault();
-    const stream = String(new FormData(form).get('stream')).trim();
-    if (stream !== '') location.search = `?${new URLSearchParams({ stream })}`;
-  });
-  let isOpen = false;
-  const openFile = (file: File | undefined): void => {
-    if (file === undefined || isOpen) return;
-    isOpen = true;
-    box.hidden = true;
-    part('card').hidden = part('tools').hidden = false;
-    boot.source = { kind: 'stream', url: URL.createObjectURL(file), name: file.name };
-    boot.open(boot.source);
-    start(boot);
-  };
-  box.querySelector<HTMLInputElement>('input[type=file]')!.addEventListener('change', (event) => {
-    openFile((event.target as HTMLInputElement).files?.[0]);
-  });
-  addEventListener('dragover', (event) => { event.preventDefault(); });
-  addEventListener('drop', (event) => {
-    event.preventDefault();
-    openFile(event.dataTransfer?.files[0]);
-  });
 }
 
 function start(boot: Boot): void {
@@ -634,7 +447,7 @@ const boot = window.ptinBoot;
 if (location.protocol === 'file:') {
   // The page itself has told it (index.html).
 } else if (boot.source === null) {
-  welcome(boot);
+  welcome(boot, () => { start(boot); });
 } else {
   start(boot);
 }
