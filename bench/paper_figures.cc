@@ -209,7 +209,8 @@ void check_against_store(const MadeTerrain& terrain, const Counted& counted) {
   StarredRecords records = starred_records(std::vector(tile.records), 0, RecordStars(tile.stars));
   BuildReport report;
   std::filesystem::create_directory(folder.file("work"));
-  StoreOutput output(path, {}, false, terrain.frame, FileLayer::system(), folder.file("work"));
+  StoreOutput output(path, {}, false, terrain.frame, false, FileLayer::system(),
+                     folder.file("work"));
   const PreparedSegment segment = output.packer().prepare(records);
   output.packer().place(segment.pages, output.page_bytes());
   output.add(segment);

@@ -28,6 +28,7 @@ class DirectoryWriter {
   [[nodiscard]] std::uint64_t root_bytes() const noexcept;
   [[nodiscard]] std::uint64_t node_bytes() const noexcept;
   /// Writes the nodes, one behind the other. Returns the checksum of their bytes.
+  /// @param walk  As plan(), but with names for numbers (PageNames).
   /// @throws Error io_error, resource_exhausted
   std::uint64_t write_nodes(const PageWalk& walk, ScratchFile& out, std::uint64_t offset);
   /// The directory's own section, once the nodes were written.

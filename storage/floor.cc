@@ -103,17 +103,41 @@ Floor::Found Floor::find(std::uint64_t key, std::size_t depth, Recent& recent,
   return found;
 }
 
-void Floor::announce(std::span<const std::uint64_t> keys, Recent& recent,
-                     IoCounters& counters) const {
+/// The nodes or pages of a depth that hold some keys.
+std::vector<Floor::Found> Floor::find_all(std::span<const std::uint64_t> keys, std::size_t depth,
+                                          Recent& recent, IoCounters& counters) const {
+  std::vector<Found> found;
+  for (auto key = keys.begin(); key != keys.end();) {
+    found.push_back(find(*key, depth, recent, counters));
+    key = std::lower_bound(key, keys.end(), found.back().end);
+  }
+  return found;
+}
+
+void Floor::announce(std::span<const std::uint64_t> keys, Recent& recent, IoCounters& counters,
+                     Coming coming) const {
   if (!is_far()) return;
   for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) {
-    std::vector<Found> found;
-    for (auto key = keys.begin(); key != keys.end();) {
-      found.push_back(find(*key, depth, recent, counters));
-      key = std::lower_bound(key, keys.end(), found.back().end);
-    }
-    announce(found, recent, counters);
+    announce(find_all(keys, depth, recent, counters), recent, counters, coming);
   }
+}
+
+void Floor::announce_known(std::span<const std::uint64_t> keys, Recent& recent,
+                           IoCounters& counters) const {
+  if (!is_far()) return;
+  for (std::size_t depth = 1; depth <= tree_.levels(); ++depth) {
+    const std::vector<Found> found = find_all(keys, depth, recent, counters);
+    announce(found, recent, counters, Coming::kWithNext);
+    const auto is_known = [&](const Found& f) { return is_at_hand(f, recent); };
+    if (depth < tree_.levels() && !std::ranges::all_of(found, is_known)) return;
+  }
+}
+
+/// Whether a node is read without waiting for a server.
+bool Floor::is_at_hand(const Found& node, const Recent& recent) const {
+  const std::uint64_t position = tree_.position(node.level, node.number);
+  return recent.nodes_[position % recent.nodes_.size()].position == position ||
+         file_.is_at_hand({place_.offset_of_node(position), layout::kNodeBytes});
 }
 
 const Floor::Recent::Page& Floor::read_page(const Found& found, Recent& recent,

@@ -53,6 +53,12 @@ class Floor {
     Recent& operator=(const Recent&) = delete;
     /// The page that was looked at last.
     [[nodiscard]] std::uint64_t page() const noexcept { return last_->number; }
+    /// Goes on with another floor.
+    void forget() noexcept {
+      for (Page& page : pages_) page.number = UINT64_MAX;
+      for (Node& node : nodes_) node.position = UINT64_MAX;
+      last_ = &pages_[0];
+    }
 
    private:
     friend class Floor;
@@ -80,15 +86,23 @@ class Floor {
 
   [[nodiscard]] const FloorFacts& facts() const noexcept { return facts_; }
   [[nodiscard]] const FloorNumbers& numbers() const noexcept { return numbers_; }
+  /// As vertices have them.
+  [[nodiscard]] const HeightEncoding& heights() const noexcept { return heights_; }
   [[nodiscard]] std::uint64_t pages() const noexcept { return tree_.pages(); }
 
   /// ReadableFile::is_far() of the file.
   [[nodiscard]] bool is_far() const noexcept { return file_.is_far(); }
   /// Has what some tiles are read from come together, where it lies elsewhere: a round for each level of
   /// nodes below the root, and one for the pages. Else nothing.
-  /// @param keys  FloorShape::key() of tiles, ascending.
+  /// @param keys    FloorShape::key() of tiles, ascending.
+  /// @param coming  Whether the tiles are read next, or something else before them.
   /// @throws Error corruption, io_error
-  void announce(std::span<const std::uint64_t> keys, Recent& recent, IoCounters& counters) const;
+  void announce(std::span<const std::uint64_t> keys, Recent& recent, IoCounters& counters,
+                Coming coming = Coming::kInOrder) const;
+  /// The same, but reads nothing from elsewhere: where nodes are not at hand, they are announced, and the
+  /// tiles below them when this is called again.
+  void announce_known(std::span<const std::uint64_t> keys, Recent& recent,
+                      IoCounters& counters) const;
 
   /// What is known of samples before they are read.
   struct Bounds {
@@ -175,7 +189,11 @@ class Floor {
   /// The pages that are not below the cut-off, along the curve.
   [[nodiscard]] std::vector<Found> find_pages(const Bound& bound, Merit cut_off, Recent& recent,
                                               IoCounters& counters) const;
-  void announce(const std::vector<Found>& found, const Recent& recent, IoCounters& counters) const;
+  void announce(const std::vector<Found>& found, const Recent& recent, IoCounters& counters,
+                Coming coming = Coming::kInOrder) const;
+  [[nodiscard]] std::vector<Found> find_all(std::span<const std::uint64_t> keys, std::size_t depth,
+                                            Recent& recent, IoCounters& counters) const;
+  [[nodiscard]] bool is_at_hand(const Found& node, const Recent& recent) const;
   [[nodiscard]] Bounds bounds_of(const TileRange& tiles, OrderedHeight least,
                                  OrderedHeight greatest) const;
   const Recent::Page& read_page(const Found& found, Recent& recent, IoCounters& counters) const;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "engine/geometry/height.h"
 #include "engine/geometry/interval.h"
@@ -64,6 +65,11 @@ class FloorNumbers {
     if (step_ == 0) return height_of_ordered(ordered, type_);
     const double k = std::bit_cast<std::int32_t>(ordered ^ kSign);
     return std::bit_cast<HeightBits>(static_cast<float>(step_ * k));
+  }
+  /// Makes numbers of tiles what the file's vertices have as their ordered heights.
+  void to_ordered_heights(std::span<OrderedHeight> numbers) const noexcept {
+    if (step_ == 0) return;  // they are these
+    for (OrderedHeight& number : numbers) number = ordered_height(bits(number), type_);
   }
   /// REQUIRES: with a step, the height is that of a whole number.
   [[nodiscard]] OrderedHeight ordered(HeightBits bits) const noexcept {

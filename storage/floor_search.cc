@@ -147,13 +147,13 @@ void Floor::expand(const Found& found, const Bound& bound, Merit cut_off, std::v
   }
 }
 
-void Floor::announce(const std::vector<Found>& found, const Recent& recent,
-                     IoCounters& counters) const {
+void Floor::announce(const std::vector<Found>& found, const Recent& recent, IoCounters& counters,
+                     Coming coming) const {
   const auto is_recent = [&](const Found& f) {
     return f.level == tree_.levels() &&
            recent.pages_[f.number % recent.pages_.size()].number == f.number;
   };
-  RangesToCome ranges(file_, counters);
+  RangesToCome ranges(file_, counters, coming);
   for (const bool is_page : {false, true}) {
     RangeJoiner joiner(is_page ? place_.pages.offset : place_.nodes.offset, layout::kFloorPageBytes,
                        ranges);

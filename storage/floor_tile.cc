@@ -2,6 +2,7 @@
 #include "storage/floor_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 #include "storage/bit_fields.h"
@@ -144,18 +145,21 @@ std::vector<std::uint32_t> residuals_of(const FloorTile& tile,
   return residuals;
 }
 
-/// Calls work(first, columns, rows) for each block: the place of its first sample, and its size.
-template <class Work>
-bool for_each_block(std::uint32_t width, std::uint32_t height, const Work& work) {
-  for (std::uint32_t y = 0; y < height; y += kBlockHeight) {
-    for (std::uint32_t x = 0; x < width; x += kBlockWidth) {
-      if (!work(std::size_t{y} * width + x, std::min(kBlockWidth, width - x),
-                std::min(kBlockHeight, height - y))) {
-        return false;
-      }
+/// Puts a block of residuals: their width, and them.
+/// @param first  That of the block's south-western sample.
+void put_block(const std::uint32_t* first, std::uint32_t tile_width, std::uint32_t columns,
+               std::uint32_t rows, BitWriter& bits) {
+  std::uint32_t all = 0;
+  for (std::uint32_t y = 0; y < rows; ++y) {
+    for (std::uint32_t x = 0; x < columns; ++x) all |= first[std::size_t{y} * tile_width + x];
+  }
+  const auto width = static_cast<unsigned>(std::bit_width(all));
+  bits.put(width, kWidthBits);
+  for (std::uint32_t y = 0; y < rows; ++y) {
+    for (std::uint32_t x = 0; x < columns; ++x) {
+      bits.put(first[std::size_t{y} * tile_width + x], width);
     }
   }
-  return true;
 }
 
 void put_heights(const FloorTile& tile, BitWriter& bits) {
@@ -163,23 +167,13 @@ void put_heights(const FloorTile& tile, BitWriter& bits) {
   if (has_voids(tile)) fill_voids(tile, heights);
   const std::vector<std::uint32_t> residuals = residuals_of(tile, heights);
   bits.put(heights.front(), kHeightBits);
-  for_each_block(tile.width, tile.height,
-                 [&](std::size_t first, std::uint32_t columns, std::uint32_t rows) {
-                   std::uint32_t all = 0;
-                   for (std::uint32_t y = 0; y < rows; ++y) {
-                     for (std::uint32_t x = 0; x < columns; ++x) {
-                       all |= residuals[first + std::size_t{y} * tile.width + x];
-                     }
-                   }
-                   const auto bits_of_block = static_cast<unsigned>(std::bit_width(all));
-                   bits.put(bits_of_block, kWidthBits);
-                   for (std::uint32_t y = 0; y < rows; ++y) {
-                     for (std::uint32_t x = 0; x < columns; ++x) {
-                       bits.put(residuals[first + std::size_t{y} * tile.width + x], bits_of_block);
-                     }
-                   }
-                   return true;
-                 });
+  for (std::uint32_t y = 0; y < tile.height; y += kBlockHeight) {
+    for (std::uint32_t x = 0; x < tile.width; x += kBlockWidth) {
+      put_block(residuals.data() + std::size_t{y} * tile.width + x, tile.width,
+                std::min(kBlockWidth, tile.width - x), std::min(kBlockHeight, tile.height - y),
+                bits);
+    }
+  }
 }
 
 void put_lone(const FloorTile& tile, BitWriter& bits) {
@@ -222,31 +216,57 @@ const char* take_voids(BitReader& bits, FloorTile& tile) {
   return nullptr;
 }
 
-/// Residuals to heights: a sum along each row, and down each column.
-void sum_up(FloorTile& tile) noexcept {
-  const std::size_t width = tile.width;
-  for (std::size_t row = 0; row < tile.height; ++row) {
-    OrderedHeight* const here = tile.heights.data() + row * width;
-    const OrderedHeight* const above = row > 0 ? here - width : nullptr;
-    OrderedHeight along = 0;
-    for (std::size_t x = 0; x < width; ++x) {
-      along += here[x];
-      here[x] = along + (above != nullptr ? above[x] : 0);
+/// Takes `kColumns` residuals of a row, and appends their running sum to it.
+template <unsigned kColumns>
+OrderedHeight take_row(BitReader& bits, unsigned width, OrderedHeight along,
+                       OrderedHeight* out) noexcept {
+  // Residuals of up to 7 bits, as most are, are a single load.
+  if (width * kColumns > kMostFieldBits) {
+    for (unsigned i = 0; i < kColumns; ++i) {
+      out[i] = along += unzigzag(bits.take(width));
     }
+    return along;
   }
+  std::uint64_t word = bits.take_word(width * kColumns);
+  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
+  for (unsigned i = 0; i < kColumns; ++i) {
+    out[i] = along += unzigzag(static_cast<std::uint32_t>(word & mask));
+    word >>= width;
+  }
+  return along;
 }
 
-/// Takes a row of a block. One of residuals of up to 7 bits, as most are, is a single load.
-void take_residuals(BitReader& bits, unsigned width, std::span<OrderedHeight> out) noexcept {
-  if (width * out.size() > kMostFieldBits) {
-    for (OrderedHeight& residual : out) residual = unzigzag(bits.take(width));
-    return;
+OrderedHeight take_row(BitReader& bits, unsigned width, std::uint32_t columns, OrderedHeight along,
+                       OrderedHeight* out) noexcept {
+  if (columns == kBlockWidth) return take_row<kBlockWidth>(bits, width, along, out);
+  for (; columns > 0; --columns) along = take_row<1>(bits, width, along, out++);
+  return along;
+}
+
+/// Takes the rows of a row of blocks, each summed up along itself: the sums of a block's rows do not wait
+/// for one another.
+bool take_band(BitReader& bits, FloorTile& tile, std::uint32_t y, std::uint32_t rows) noexcept {
+  std::array<OrderedHeight, kBlockHeight> along{};
+  for (std::uint32_t x = 0; x < tile.width; x += kBlockWidth) {
+    if (!bits.has(kWidthBits)) return false;
+    const unsigned width = bits.take(kWidthBits);
+    const std::uint32_t columns = std::min(kBlockWidth, tile.width - x);
+    if (width > kHeightBits || !bits.has(std::size_t{width} * columns * rows)) return false;
+    OrderedHeight* out = tile.heights.data() + std::size_t{y} * tile.width + x;
+    for (std::uint32_t row = 0; row < rows; ++row, out += tile.width) {
+      along[row] = take_row(bits, width, columns, along[row], out);
+    }
   }
-  std::uint64_t word = bits.take_word(static_cast<unsigned>(width * out.size()));
-  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
-  for (OrderedHeight& residual : out) {
-    residual = unzigzag(static_cast<std::uint32_t>(word & mask));
-    word >>= width;
+  return true;
+}
+
+/// Adds what lies above to rows that are summed up along themselves.
+void add_above(FloorTile& tile, std::uint32_t y, std::uint32_t rows) noexcept {
+  const std::size_t width = tile.width;
+  for (std::uint32_t row = y; row < y + rows; ++row) {
+    OrderedHeight* const here = tile.heights.data() + row * width;
+    const OrderedHeight* const above = here - width;
+    for (std::size_t x = 0; x < width; ++x) here[x] += above[x];
   }
 }
 
@@ -254,21 +274,20 @@ const char* take_heights(BitReader& bits, FloorTile& tile) {
   if (!bits.has(kHeightBits)) return kCut;
   const OrderedHeight first_height = bits.take(kHeightBits);
   tile.heights.resize(tile.samples());
-  const bool is_whole = for_each_block(
-      tile.width, tile.height, [&](std::size_t first, std::uint32_t columns, std::uint32_t rows) {
-        if (!bits.has(kWidthBits)) return false;
-        const unsigned width = bits.take(kWidthBits);
-        if (width > kHeightBits || !bits.has(std::size_t{width} * columns * rows)) return false;
-        for (std::uint32_t y = 0; y < rows; ++y) {
-          take_residuals(bits, width,
-                         {tile.heights.data() + first + std::size_t{y} * tile.width, columns});
-        }
-        return true;
-      });
-  if (!is_whole) return "a tile of heights ends too early, or has numbers of more than 32 bits";
-  if (tile.heights.front() != 0) return "a tile of heights tells its first height twice";
-  tile.heights.front() = first_height;
-  sum_up(tile);
+  for (std::uint32_t y = 0; y < tile.height; y += kBlockHeight) {
+    const std::uint32_t rows = std::min(kBlockHeight, tile.height - y);
+    if (!take_band(bits, tile, y, rows)) {
+      return "a tile of heights ends too early, or has numbers of more than 32 bits";
+    }
+    if (y > 0) {
+      add_above(tile, y, rows);
+      continue;
+    }
+    // The sum of one residual is that residual.
+    if (tile.heights.front() != 0) return "a tile of heights tells its first height twice";
+    for (std::uint32_t x = 0; x < tile.width; ++x) tile.heights[x] += first_height;
+    add_above(tile, 1, rows - 1);
+  }
   return nullptr;
 }
 

@@ -35,7 +35,7 @@ void IndexNodes::verify(const layout::IndexNode& node, std::uint32_t level, std:
                 "the node does not match the checksum that its parent holds; the file is damaged",
                 node_name(path(), level, number));
   }
-  if (node.level != level || node.number != number ||
+  if (node.level != level || node.number != place_.shape.name_of(level, number) ||
       node.entries != place_.shape.entries(level, number)) {
     throw Error(ErrorCode::corruption,
                 "the node says another place or number of entries than follows from its position",
@@ -52,20 +52,19 @@ void IndexNodes::verify(const layout::IndexNode& node, std::uint32_t level, std:
 }
 
 layout::NodeEntry IndexNodes::descend_to(PageId page) const {
-  // Number of the node of each level on the way: the page's number, divided by the fan-out once a
-  // level.
-  std::array<std::uint64_t, IndexShape::kMaxLevels + 1> way{};
-  way[0] = index_of(page);
+  const auto [leaf, entry_in_leaf] = place_.shape.leaf_entry(index_of(page));
+  // Number of the node of each level on the way: the leaf's, divided by the fan-out once a level.
+  std::array<std::uint64_t, IndexShape::kMaxLevels> way{leaf};
   const std::uint32_t levels = place_.shape.levels();
-  for (std::uint32_t level = 0; level < levels; ++level) {
-    way[level + 1] = way[level] / layout::kFanOut;
+  for (std::uint32_t level = 1; level < levels; ++level) {
+    way[level] = way[level - 1] / layout::kFanOut;
   }
   layout::NodeEntry entry{};
   entry.checksum = place_.root_checksum;
   layout::IndexNode scratch;
   for (std::uint32_t level = levels; level-- > 0;) {
-    const layout::IndexNode& n = node(level, way[level + 1], entry.checksum, scratch);
-    entry = n.entry[way[level] % layout::kFanOut];
+    const layout::IndexNode& n = node(level, way[level], entry.checksum, scratch);
+    entry = n.entry[level == 0 ? entry_in_leaf : way[level - 1] % layout::kFanOut];
   }
   return entry;
 }
@@ -101,14 +100,14 @@ const layout::IndexNode& MappedIndexNodes::node(std::uint32_t level, std::uint64
 
 layout::NodeEntry MappedIndexNodes::descriptor(PageId page) const {
   require_page(page);
-  const std::uint64_t leaf = index_of(page) / layout::kFanOut;
+  const auto [leaf, entry] = place_.shape.leaf_entry(index_of(page));
   const std::uint64_t position = place_.shape.position(0, leaf);
   if (!verified_.test(position)) {
     return descend_to(page);
   }
   const auto& mapped =
       *reinterpret_cast<const layout::IndexNode*>(mapping_.at(offset_of(position)));
-  return mapped.entry[index_of(page) % layout::kFanOut];
+  return mapped.entry[entry];
 }
 
 PreadIndexNodes::PreadIndexNodes(const ReadableFile& file, const Root& place,
@@ -146,12 +145,13 @@ bool PreadIndexNodes::is_known(std::uint64_t position) const noexcept {
 
 layout::NodeEntry PreadIndexNodes::descriptor(PageId page) const {
   require_page(page);
-  const std::uint64_t position = place_.shape.position(0, index_of(page) / layout::kFanOut);
+  const auto [leaf, entry] = place_.shape.leaf_entry(index_of(page));
+  const std::uint64_t position = place_.shape.position(0, leaf);
   Slot& slot = slot_of(position);
   {
     const std::lock_guard lock(slot.lock);
     if (slot.position == position) {
-      return slot.node->entry[index_of(page) % layout::kFanOut];
+      return slot.node->entry[entry];
     }
   }
   return descend_to(page);

@@ -13,6 +13,14 @@ namespace {
 
 constexpr std::size_t kBufferedLeaves = 16;
 
+/// A segment of fewer pages would leave more room in its last leaf than leaves of its own are worth.
+constexpr std::uint64_t kLeastSegmentPages = 2 * layout::kFanOut;
+/// A segment is no smaller a part of the pages up to its end, so that the table of segments stays short.
+/// At 10^9 vertices it takes 6 KB, and comes with the opening of a file elsewhere.
+constexpr std::uint64_t kLeastSegmentPart = 512;
+/// More have no names of 32 bits.
+constexpr std::uint64_t kMostSegmentPages = std::uint64_t{1} << IndexShape::kNameBits;
+
 // The entry by which the level above describes a finished node.
 layout::NodeEntry describe(const layout::IndexNode& node, const HeightEncoding& heights) {
   Descriptor all(heights);
@@ -44,15 +52,41 @@ IndexWriter::IndexWriter(FileLayer& files, std::string folder, std::string stem,
     : files_(files), folder_(std::move(folder)), stem_(std::move(stem)), heights_(heights) {}
 
 void IndexWriter::add(const layout::NodeEntry& page) {
+  if (segment_pages_ == kMostSegmentPages) {
+    cut();
+  }
   leaf_.entry[leaf_.entries++] = page;
   ++pages_;
+  ++segment_pages_;
   if (leaf_.entries == layout::kFanOut) {
     finish_leaf();
   }
 }
 
+void IndexWriter::end_segment() {
+  if (segment_pages_ >= std::max(kLeastSegmentPages, pages_ / kLeastSegmentPart)) {
+    cut();
+  }
+}
+
+void IndexWriter::finish() {
+  if (segment_pages_ > 0) {
+    cut();
+  }
+}
+
+void IndexWriter::cut() {
+  if (leaf_.entries > 0) {
+    finish_leaf();
+  }
+  segments_.push_back(segment_pages_);
+  segment_pages_ = 0;
+  segment_leaves_ = 0;
+}
+
 void IndexWriter::finish_leaf() {
-  leaf_.number = parents_.size();
+  // As IndexShape::name_of() has it.
+  leaf_.number = std::uint64_t{segments_.size()} << 32 | segment_leaves_++;
   parents_.push_back(describe(leaf_, heights_));
   buffer_.push_back(leaf_);
   leaf_ = {};
@@ -87,10 +121,8 @@ std::uint64_t IndexWriter::write_to(ScratchFile& out, std::uint64_t offset) {
   if (pages_ == 0) {
     return 0;
   }
-  if (leaf_.entries > 0) {
-    finish_leaf();
-  }
-  const IndexShape shape(pages_);
+  PTIN_CHECK(segment_pages_ == 0);
+  const IndexShape shape(segments_);
   const auto place = [&](std::uint32_t level, std::uint64_t number) {
     return offset + shape.position(level, number) * layout::kNodeBytes;
   };

@@ -22,12 +22,13 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N',
 /// What a stream begins with (engine/query/stream/stream_format.h): no store, and refused as such.
 inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
                                                              0x0D, 0x0A, 0x1A, 0x0A};
-inline constexpr std::uint16_t kMajorVersion = 2;
-/// The newest minor version that is known. A writer writes the lowest that holds what it has to say:
-/// 0, or 1 where there is a directory, or 2 where there are the heights of a raster.
-inline constexpr std::uint16_t kMinorVersion = 2;
-inline constexpr std::uint16_t kMinorVersionOfDirectory = 1;
-inline constexpr std::uint16_t kMinorVersionOfFloor = 2;
+/// What a writer writes. Files of the oldest version that is read have pages of another form.
+inline constexpr std::uint16_t kMajorVersion = 3;
+inline constexpr std::uint16_t kOldestMajorVersion = 2;
+/// The newest minor version that is known of a major one.
+[[nodiscard]] constexpr std::uint16_t newest_minor(std::uint16_t major) noexcept {
+  return major == 2 ? 2 : 0;
+}
 
 inline constexpr std::uint32_t kMinPageBytes = 4096;
 inline constexpr std::uint32_t kMaxPageBytes = 65536;
@@ -77,6 +78,7 @@ enum class SectionKind : std::uint32_t {
   kFloorRoot = 9,       ///< All three or none. Kept before the index, which comes at the opening.
   kFloorNodes = 10,     ///< Those below the root. Kept behind the pages, as the next.
   kFloorPages = 11,
+  kSegments = 12,  ///< Since version 3. Kept behind the table.
 };
 
 /// One line of the section table, which follows the header.
@@ -86,6 +88,12 @@ struct SectionEntry {
   std::uint64_t checksum;  ///< The section's; for kIndex that of the root node; 0 for kPages.
 };
 static_assert(sizeof(SectionEntry) == 32 && offsetof(SectionEntry, offset) == 8);
+
+/// Pages of a segment: those behind the ones before it.
+struct SegmentEntry {
+  std::uint16_t last;  ///< Number of its last page within it.
+};
+static_assert(sizeof(SegmentEntry) == 2);
 
 struct T0Vertex {
   std::int32_t x, y;
@@ -128,7 +136,7 @@ inline constexpr std::uint32_t kFanOut = 56;
 struct IndexNode {
   std::uint32_t level;    ///< 0 for a leaf.
   std::uint32_t entries;  ///< Entries in use; the others are zero.
-  std::uint64_t number;   ///< Within its level.
+  std::uint64_t number;   ///< Within its level; of a leaf as IndexShape::name_of().
   std::array<NodeEntry, kFanOut> entry;
   std::array<std::uint8_t, 48> unused;  ///< Zero.
 };
@@ -217,11 +225,17 @@ struct PageHeader {
   std::uint8_t degree, offset_bits, height_bits, death_bits;  // 22  bases
   std::array<std::uint8_t, 17> width;                         // 26  of the columns, bits
   std::uint8_t void_bits, no_height_bits;                     // 43  0 or 1, of every corner
-  std::array<std::uint8_t, 3> reserved;                       // 45  zero
+  std::uint8_t shift, shift_width;                            // 45  base and width; 2.x: 0
+  std::uint8_t flags;                                         // 47  kLocalPage; 2.x: 0
 };
 static_assert(sizeof(PageHeader) == 48 && offsetof(PageHeader, error) == 16 &&
               offsetof(PageHeader, degree) == 22 && offsetof(PageHeader, width) == 26 &&
               offsetof(PageHeader, void_bits) == 43);
+
+/// Bit of PageHeader::flags: the heights of the page's vertices are those of the raster's samples.
+inline constexpr std::uint8_t kLocalPage = 1;
+/// Records whose errors are found without those before.
+inline constexpr std::uint32_t kErrorRun = 64;
 
 /// The last bytes of a page are zero, so that a number of up to 57 bits is read by one load.
 inline constexpr std::size_t kPageTailBytes = 8;

@@ -207,15 +207,20 @@ void PackedRTree::BestFirst::announce_with_best(const Waiting& next) {
       best.push_back(at);
     }
   }
-  RangesToCome ranges(tree_.nodes_.file(), counters_);
-  for (const Waiting& w : best) {
-    if (w.level == 0) {
-      const PageId page{w.number};
-      tree_.pages_->add_ranges(std::span(&page, 1), ranges);
-    } else {
-      tree_.nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
+  std::vector<GridBox> stars;
+  {
+    RangesToCome ranges(tree_.nodes_.file(), counters_);
+    for (const Waiting& w : best) {
+      if (w.level == 0) {
+        const PageId page{w.number};
+        tree_.pages_->add_ranges(std::span(&page, 1), ranges);
+        stars.push_back(pages_[w.checksum].box);
+      } else {
+        tree_.nodes_.add_ranges(w.level - 1, std::span(&w.number, 1), ranges);
+      }
     }
   }
+  visitor_.will_visit(stars);
   std::for_each(best.begin() + 1, best.end(), [&](const Waiting& w) { push(w); });
 }
 
@@ -237,11 +242,12 @@ void PackedRTree::visit(const NodePlace& at, const Test& test, IoCounters& count
   const layout::IndexNode& node = nodes_.node(at.level, at.number, at.checksum, scratch);
   ++counters.index_nodes;
   counters.bytes_read += layout::kNodeBytes;
-  const std::uint32_t entries = nodes_.shape().entries(at.level, at.number);
+  const std::uint32_t entries = node.entries;  // verified
+  const std::uint64_t first = nodes_.shape().first_child(at.level, at.number);
   for (std::uint32_t i = 0; i < entries; ++i) {
     const layout::NodeEntry& entry = node.entry[i];
     if (test(entry)) {
-      take(at.number * layout::kFanOut + i, entry);
+      take(first + i, entry);
     }
   }
 }

@@ -42,6 +42,8 @@ class BestStarVisitor {
   /// Whether all that passes the filter will probably be visited: of a far file it is then announced
   /// together. A hint.
   [[nodiscard]] virtual bool wants_all() const { return false; }
+  /// Called when pages of a far file were announced, with the boxes of their stars.
+  virtual void will_visit(std::span<const GridBox> stars) { static_cast<void>(stars); }
   /// Called for pages in the order of falling bounds. Returns the cut-off: pages and nodes whose
   /// bound is below it are not visited.
   /// @param a  What the descriptor says of the page's stars.

@@ -11,9 +11,9 @@
 namespace ptin {
 
 PackedSegment pack_segment(const StarredRecords& records, const HeightEncoding& heights,
-                           std::uint32_t page_bytes) {
+                           const PageForm& form, std::uint32_t page_bytes) {
   PackedSegment packed;
-  PagePacker page(page_bytes, heights);
+  PagePacker page(page_bytes, heights, form);
   ErrorTable errors;
   const auto finish = [&] {
     layout::NodeEntry descriptor;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "storage/layout.h"
+#include "storage/page_columns.h"
 #include "storage/star.h"
 #include "storage/store_file.h"
 
@@ -28,6 +29,7 @@ struct PackedSegment {
 /// @throws Error internal  a record is not so
 /// Memory: the pages, and 32 bytes a record while they are ordered. Cost: O(n log n).
 [[nodiscard]] PackedSegment pack_segment(const StarredRecords& records,
-                                         const HeightEncoding& heights, std::uint32_t page_bytes);
+                                         const HeightEncoding& heights, const PageForm& form,
+                                         std::uint32_t page_bytes);
 
 }  // namespace ptin

@@ -20,9 +20,12 @@ namespace ptin {
 /// order and the size of the page alone.
 class PagePacker {
  public:
-  /// @param is_checked  Whether add() looks at what it REQUIRES; not needed for records that a
-  ///     reader has accepted.
-  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights, bool is_checked = true);
+  enum class Packing : std::uint8_t {
+    kNew,    ///< add() looks at what it REQUIRES, and ends a local page before it grows by much.
+    kAgain,  ///< The records of a page that a reader has accepted.
+  };
+  PagePacker(std::uint32_t page_bytes, const HeightEncoding& heights, const PageForm& form,
+             Packing packing = Packing::kNew);
 
   /// Adds a record, unless the page would not hold it: then nothing changes, and the answer is
   /// false. An empty page holds any record.
@@ -58,22 +61,40 @@ class PagePacker {
     Numbers least, most;
     ShortRange error, deviation;
     bool has_void = false, has_no_height = false;
-    std::size_t own_bits = 0;  ///< Bits of all corners: offsets, heights and deaths.
+    std::size_t own_bits = 0;     ///< Bits of all corners: offsets and deaths.
+    std::size_t height_bits = 0;  ///< And heights.
     std::size_t corners = 0;
+    GridBox vertices;
+    bool is_local = false;
+  };
+  /// A page as its header says, and what it takes.
+  struct Plan {
+    layout::PageHeader header{};
+    std::size_t place_bits = 0;  ///< Of errors that descend.
+    std::size_t bytes = 0;       ///< At most.
   };
 
   [[nodiscard]] Item item_of(const VertexSplit& r, std::span<const RingCorner> ring);
+  [[nodiscard]] VertexSplit as_kept(const VertexSplit& r, const Item& item) const;
   void widen(Frame& frame, const Item& item) const;
+  [[nodiscard]] Frame empty_frame() const;
   [[nodiscard]] layout::PageHeader header_of(const Frame& frame, std::size_t records) const;
+  void put_errors(const Frame& frame, Plan& plan) const;
+  [[nodiscard]] Plan plan_of(const Frame& frame, std::size_t records) const;
   [[nodiscard]] bool fits(const Frame& frame, std::size_t records) const;
+  [[nodiscard]] bool may_join(const Frame& wider) const;
+  [[nodiscard]] std::uint32_t stored(std::size_t column, std::size_t item,
+                                     const layout::PageHeader& header) const;
   [[nodiscard]] std::size_t write_columns(const layout::PageHeader& header);
-  void write_rings(layout::PageHeader& header, std::size_t runs);
+  [[nodiscard]] std::size_t write_errors(const Plan& plan, std::size_t begin);
+  void write_rings(layout::PageHeader& header, std::size_t runs, std::size_t rings);
 
   void check(const VertexSplit& r, std::span<const RingCorner> ring) const;
 
   std::vector<std::byte> page_;
   HeightEncoding heights_;
-  bool is_checked_;
+  PageForm form_;
+  Packing packing_;
   Descriptor descriptor_;
   Frame frame_;
   std::vector<Item> items_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "engine/error.h"
@@ -104,10 +105,11 @@ void PointDirectory::read_node(const DirectoryRoot& root, const DirectoryCells::
   const DirectoryNode node(bytes);
   for (std::size_t i = 0; i < node.count(); ++i) {
     const layout::DirectoryEntry e = node.entry(i);
-    if (e.page >= pages_) {
+    const std::optional<std::uint64_t> number = pages_.page(e.page);
+    if (!number) {
       throw Error(ErrorCode::corruption, "the node names a page that is not there", place());
     }
-    const DirectoryPage page{PageId{e.page}, e.checksum, box_of_bytes(e.box, cell.box),
+    const DirectoryPage page{PageId{*number}, e.checksum, box_of_bytes(e.box, cell.box),
                              root.scale.error_of(e.error_max), root.scale.death_of(e.death_min)};
     if (page.error_max > level - (filter.with_ties ? 1 : 0) && page.death_min <= level + 1) {
       visit(page);

@@ -14,6 +14,7 @@
 #include "storage/directory_cells.h"
 #include "storage/file/io_counters.h"
 #include "storage/file/readable_file.h"
+#include "storage/index_shape.h"
 #include "storage/page_store.h"
 
 namespace ptin {
@@ -59,10 +60,10 @@ struct DirectoryRoot {
 class PointDirectory {
  public:
   /// Reads nothing yet.
-  /// @param file   Borrowed.
-  /// @param pages  As many as the file has.
+  /// @param file   Borrowed, as the shape of which `pages` speaks.
+  /// @param pages  How nodes name them.
   PointDirectory(const ReadableFile& file, const DirectoryPlace& place, const GridBox& bounds,
-                 std::uint64_t pages)
+                 const PageNames& pages)
       : file_(file), place_(place), bounds_(bounds), pages_(pages) {}
 
   /// The pages that may hold living stars at each of some places.
@@ -97,7 +98,7 @@ class PointDirectory {
   const ReadableFile& file_;
   DirectoryPlace place_;
   GridBox bounds_;
-  std::uint64_t pages_;
+  PageNames pages_;
   mutable std::mutex mutex_;
   mutable std::unique_ptr<const DirectoryRoot> root_;  ///< Once it was read, it stays.
 };

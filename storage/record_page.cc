@@ -51,20 +51,24 @@ HeadBounds::HeadBounds(const layout::NodeEntry& d, HeightType type) noexcept
 }
 
 RecordPage::RecordPage(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
-                       const HeightEncoding& heights, std::span<const std::byte> bytes)
+                       const HeightEncoding& heights, const PageForm& form,
+                       std::span<const std::byte> bytes, SampleHeights* floor)
     : path_(path),
       id_(id),
       descriptor_(descriptor),
       heights_(heights),
       bytes_(bytes),
+      floor_(floor),
       bounds_(descriptor, heights.type) {
   check_descriptor(path, id, descriptor, heights, bytes.size());
-  layout::PageHeader header;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  if (!columns_.read(header, bytes.size()) || records() != descriptor.records) [[unlikely]] {
+  if (!columns_.read(bytes, form) || records() != descriptor.records) [[unlikely]] {
     throw_corrupt(
         "the page begins with numbers that no program wrote, or that its descriptor excludes", path,
         id);
+  }
+  if (columns_.is_local() && floor_ == nullptr) [[unlikely]] {
+    throw_corrupt("the page leaves the heights of its vertices to samples that cannot be read",
+                  path, id);
   }
 }
 
@@ -74,20 +78,56 @@ void RecordPage::report(std::size_t record) const {
                 path_, id_);
 }
 
-void PageRun::take_all() noexcept {
+void PageRun::take_all() {
   for (std::size_t c = 0; c < kPageColumns; ++c) {
-    page_.columns().read_run(page_.bytes(), static_cast<PageColumn>(c), first_,
-                             std::span(numbers_[c]).first(count_));
-    taken_[c] = all();
+    read_column(static_cast<PageColumn>(c));
   }
 }
 
-void PageRun::read(PageColumn column, std::uint64_t records) noexcept {
+void PageRun::read_column(PageColumn column) {
   const auto c = static_cast<std::size_t>(column);
+  const PageColumns& columns = page_.columns();
+  const std::span<std::uint64_t> numbers = std::span(numbers_[c]).first(count_);
+  if (column == PageColumn::kError && columns.has_descending_errors()) {
+    columns.read_errors(page_.bytes(), first_, numbers);
+  } else if (column == PageColumn::kHeight && columns.is_local()) {
+    read_samples(all());
+  } else {
+    columns.read_run(page_.bytes(), column, first_, numbers);
+  }
+  taken_[c] = all();
+}
+
+/// The heights of u that a local page leaves to the raster.
+void PageRun::read_samples(std::uint64_t records) {
+  take_some(PageColumn::kX, records);
+  take_some(PageColumn::kY, records);
+  std::array<std::uint64_t, kMost>& heights =
+      numbers_[static_cast<std::size_t>(PageColumn::kHeight)];
+  for (; records != 0; records &= records - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(records));
+    heights[k] = page_.sample(static_cast<std::int64_t>(at(PageColumn::kX, k)),
+                              static_cast<std::int64_t>(at(PageColumn::kY, k)));
+  }
+}
+
+void PageRun::read(PageColumn column, std::uint64_t records) {
+  const auto c = static_cast<std::size_t>(column);
+  if (column == PageColumn::kHeight && page_.columns().is_local()) {
+    read_samples(records);
+    taken_[c] |= records;
+    return;
+  }
+  if (column == PageColumn::kError && page_.columns().has_descending_errors()) {
+    // Each follows from those before, so none is read behind the last one.
+    const auto end = static_cast<std::size_t>(std::bit_width(records));
+    page_.columns().read_errors(page_.bytes(), first_, std::span(numbers_[c]).first(end));
+    taken_[c] |= ~std::uint64_t{0} >> (64 - end);
+    return;
+  }
   // A run of numbers is taken out four times faster than as many single ones.
   if (4 * static_cast<std::uint32_t>(std::popcount(records)) >= count_) {
-    page_.columns().read_run(page_.bytes(), column, first_, std::span(numbers_[c]).first(count_));
-    taken_[c] = all();
+    read_column(column);
     return;
   }
   taken_[c] |= records;
@@ -123,8 +163,10 @@ template <class Record>
                                                        Record& r) const noexcept {
   const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
   const std::int64_t x = at(PageColumn::kX), y = at(PageColumn::kY);
-  const std::int64_t height = at(PageColumn::kHeight);
-  const std::int64_t low = height - at(PageColumn::kBelow), high = height + at(PageColumn::kAbove);
+  const OrderedInterval interval = run.heights(k);
+  const auto height = static_cast<std::int64_t>(interval.height);
+  const auto low = static_cast<std::int64_t>(interval.low);
+  const auto high = static_cast<std::int64_t>(interval.high);
   const std::int64_t rank = at(PageColumn::kRank);
   const std::int64_t error = run.error_bits(k), deviation = run.deviation_bits(k);
   const std::uint64_t flags = run.at(PageColumn::kFlags, k);
@@ -136,9 +178,10 @@ template <class Record>
   }
   // Numbers of columns are not negative and below 2^34. So the sign of one of these differences, and
   // with it that of their bits together, is that of a number beyond its range.
-  const std::int64_t beyond = (INT32_MAX - (x | y)) | (low - lowest) | (highest - high) |
-                              (error - bounds_.error_min) | (bounds_.error_max - error) |
-                              (bounds_.deviation_max - deviation) | (UINT16_MAX - rank);
+  const std::int64_t beyond = (INT32_MAX - (x | y)) | (height - least_height()) | (low - lowest) |
+                              (highest - high) | (error - bounds_.error_min) |
+                              (bounds_.error_max - error) | (bounds_.deviation_max - deviation) |
+                              (UINT16_MAX - rank);
   const auto bits = [&](std::int64_t ordered) {
     return height_of_ordered(static_cast<std::uint32_t>(ordered), heights_.type);
   };
@@ -355,6 +398,7 @@ bool RecordPage::ring(const PageRun& run, std::uint32_t k, const RunRings& rings
   const auto height = static_cast<std::int64_t>(own.height);
   const std::uint32_t error = short_bits(r.error);
   const bool is_closed = has_closed_ring(r);
+  const bool is_local = columns_.is_local();
   RingCheck check(r.has_height());
   const std::size_t first = out.size();
   out.resize(first + degree);
@@ -365,10 +409,11 @@ bool RecordPage::ring(const PageRun& run, std::uint32_t k, const RunRings& rings
       shape, static_cast<std::size_t>(rings.bit[k]), [&](unsigned n, const RelativeCorner& c) {
         check.add(c);
         widen(span, r.u.x + c.x, r.u.y + c.y);
-        const std::int64_t ordered = height + c.height;
+        const std::int64_t ordered =
+            is_local ? std::int64_t{sample(r.u.x + c.x, r.u.y + c.y)} : height + c.height;
         const std::uint32_t below = c.death < kFirstAboveBase ? error : c.death - kFirstAboveBase;
         // A death above 0 that is written as one at 0 would be there in two forms.
-        is_sound &= (ordered >= 0) & (ordered <= UINT32_MAX) &
+        is_sound &= (ordered >= least_height()) & (ordered <= UINT32_MAX) &
                     ((c.death < kFirstAboveBase) | (below < error));
         const auto known = static_cast<std::uint32_t>(ordered);
         span.low = c.has_height ? std::min(span.low, known) : span.low;

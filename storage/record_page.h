@@ -18,6 +18,7 @@
 #include "storage/page_columns.h"
 #include "storage/page_store.h"
 #include "storage/pending_split.h"
+#include "storage/sample_heights.h"
 #include "storage/short_float.h"
 #include "storage/star.h"
 
@@ -50,11 +51,6 @@ struct RingSpan {
   std::uint32_t least_death = UINT32_MAX;    ///< As death_bits().
 };
 
-/// The height of u, and the ends of the record's interval, as ordered numbers without wrap-around.
-struct OrderedInterval {
-  std::uint64_t height, low, high;
-};
-
 /// What a page's descriptor admits of its records, as their columns have it.
 struct HeadBounds {
   /// REQUIRES: is_sound(d, heights).
@@ -69,18 +65,27 @@ struct HeadBounds {
 /// written, and then what was asked for is unspecified.
 class RecordPage {
  public:
-  /// @param path   Borrowed, as the bytes; for messages.
-  /// @param bytes  Bytes of a whole page.
+  /// @param path    Borrowed, as the bytes; for messages.
+  /// @param bytes   Bytes of a whole page.
+  /// @param floor   The heights that a local page leaves to the raster's samples; borrowed. Null where
+  ///                the form says that there are none.
   /// @throws Error corruption  the descriptor or the page's header cannot be what was written, or
   ///                           they disagree on the number of records
   RecordPage(const std::string& path, PageId id, const layout::NodeEntry& descriptor,
-             const HeightEncoding& heights, std::span<const std::byte> bytes);
+             const HeightEncoding& heights, const PageForm& form, std::span<const std::byte> bytes,
+             SampleHeights* floor);
 
   [[nodiscard]] std::uint32_t records() const noexcept { return columns_.records(); }
   [[nodiscard]] const layout::NodeEntry& descriptor() const noexcept { return descriptor_; }
   [[nodiscard]] const HeightEncoding& heights() const noexcept { return heights_; }
   [[nodiscard]] const PageColumns& columns() const noexcept { return columns_; }
   [[nodiscard]] const std::byte* bytes() const noexcept { return bytes_.data(); }
+  /// The ordered height of a vertex of a local page; below least_height() where the raster has none.
+  /// @throws Error corruption, io_error  the tile of heights cannot be read
+  [[nodiscard]] OrderedHeight sample(std::int64_t x, std::int64_t y) const {
+    return floor_->at(x, y);
+  }
+  [[nodiscard]] std::int64_t least_height() const noexcept { return columns_.is_local() ? 1 : 0; }
 
   /// Appends all records to `out`. On an error `out` is as before.
   /// @throws Error corruption  a field cannot be what was written, or lies outside of what the
@@ -146,6 +151,7 @@ class RecordPage {
   layout::NodeEntry descriptor_;
   HeightEncoding heights_;
   std::span<const std::byte> bytes_;
+  SampleHeights* floor_;
   HeadBounds bounds_;
   PageColumns columns_;
 };
@@ -170,16 +176,25 @@ class PageRun {
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
 
   /// Takes a column out, and returns it.
-  const std::uint64_t* take(PageColumn column) noexcept {
+  /// @throws Error corruption, io_error  heights of a local page, as RecordPage::sample()
+  const std::uint64_t* take(PageColumn column) {
     take_some(column, all());
     return numbers_[static_cast<std::size_t>(column)].data();
   }
-  void take_all() noexcept;
+  void take_all();
   /// Takes the numbers of some records out: of record k where bit k is set.
-  void take_some(PageColumn column, std::uint64_t records) noexcept {
+  void take_some(PageColumn column, std::uint64_t records) {
     const std::uint64_t missing = records & ~taken_[static_cast<std::size_t>(column)];
     if (missing != 0) {
       read(column, missing);
+    }
+  }
+
+  /// Takes what heights() wants of some records.
+  void take_heights(std::uint64_t records) {
+    for (const PageColumn c :
+         {PageColumn::kHeight, PageColumn::kShift, PageColumn::kBelow, PageColumn::kAbove}) {
+      take_some(c, records);
     }
   }
 
@@ -198,10 +213,10 @@ class PageRun {
     return {whole(x - at(PageColumn::kWest, k)), whole(y - at(PageColumn::kSouth, k)),
             whole(x + at(PageColumn::kEast, k)), whole(y + at(PageColumn::kNorth, k))};
   }
-  /// REQUIRES: kHeight, kBelow and kAbove are taken.
+  /// REQUIRES: kHeight, kShift, kBelow and kAbove are taken.
   [[nodiscard]] OrderedInterval heights(std::uint32_t k) const noexcept {
-    const std::uint64_t height = at(PageColumn::kHeight, k);
-    return {height, height - at(PageColumn::kBelow, k), height + at(PageColumn::kAbove, k)};
+    return interval_of(at(PageColumn::kHeight, k), at(PageColumn::kShift, k),
+                       at(PageColumn::kBelow, k), at(PageColumn::kAbove, k), page_.heights().type);
   }
   /// Height codes; empty for a record that has none. REQUIRES: as heights(), and kFlags.
   [[nodiscard]] Interval codes(std::uint32_t k) const noexcept {
@@ -217,7 +232,9 @@ class PageRun {
   }
   /// The bits of a short number (storage/short_float.h), or more than those of infinity.
   [[nodiscard]] std::uint32_t error_bits(std::uint32_t k) const noexcept {
-    return short_of_stored(at(PageColumn::kError, k), page_.columns().header().error);
+    return page_.columns().has_descending_errors()
+               ? static_cast<std::uint32_t>(at(PageColumn::kError, k))
+               : short_of_stored(at(PageColumn::kError, k), page_.columns().header().error);
   }
   [[nodiscard]] std::uint32_t deviation_bits(std::uint32_t k) const noexcept {
     return short_of_stored(at(PageColumn::kDeviation, k), page_.columns().header().deviation);
@@ -233,7 +250,9 @@ class PageRun {
 
  private:
   [[nodiscard]] std::uint64_t all() const noexcept { return ~std::uint64_t{0} >> (kMost - count_); }
-  void read(PageColumn column, std::uint64_t records) noexcept;
+  void read(PageColumn column, std::uint64_t records);
+  void read_column(PageColumn column);
+  void read_samples(std::uint64_t records);
 
   const RecordPage& page_;
   std::uint32_t first_ = 0, count_ = 0;

@@ -17,6 +17,7 @@
 #include "storage/page_stores.h"
 #include "storage/point_directory.h"
 #include "storage/record_page.h"
+#include "storage/sample_heights.h"
 #include "storage/store_front.h"
 
 namespace ptin {
@@ -72,11 +73,11 @@ class PageBuffer {
 
 /// Lets `decode` append to `out` what a page holds, or nothing.
 template <class Records, class Decode>
-void append(const StoreFile& store, PageId id, Records& out, IoCounters& counters,
-            const Decode& decode) {
+void append(const StoreFile& store, PageId id, Records& out, SampleHeights& heights,
+            IoCounters& counters, const Decode& decode) {
   const std::size_t before = out.size();
   try {
-    store.look_at(id, decode, counters);
+    store.look_at(id, decode, heights, counters);
   } catch (const Error&) {
     out.resize(before);
     throw;
@@ -86,9 +87,9 @@ void append(const StoreFile& store, PageId id, Records& out, IoCounters& counter
 template <class Record>
 std::uint32_t append_matching(const StoreFile& store, PageId id,
                               const AttributePredicate& predicate, std::vector<Record>& out,
-                              IoCounters& counters) {
+                              SampleHeights& heights, IoCounters& counters) {
   std::uint32_t examined = 0;
-  append(store, id, out, counters, [&](const RecordPage& page) {
+  append(store, id, out, heights, counters, [&](const RecordPage& page) {
     examined = page.records();
     page.decode_matching(predicate, out);
   });
@@ -119,8 +120,9 @@ StoreFile::StoreFile(std::unique_ptr<RangedFile> file)
   read_by_copies();
   search_by_nodes();
   if (front_->directory) {
-    directory_ = std::make_unique<PointDirectory>(*file_, *front_->directory, front_->facts.bounds,
-                                                  front_->header.page_count);
+    directory_ =
+        std::make_unique<PointDirectory>(*file_, *front_->directory, front_->facts.bounds,
+                                         PageNames(front_->index, !front_->form.is_plain()));
   }
 }
 
@@ -164,6 +166,7 @@ std::optional<IoCounters> StoreFile::remote_cost() const noexcept {
 std::uint64_t StoreFile::fingerprint() const noexcept { return front_->header.header_checksum; }
 const RecordIndex& StoreFile::index() const noexcept { return *index_; }
 const PackedRTree& StoreFile::star_index() const noexcept { return *index_; }
+const IndexShape& StoreFile::index_shape() const noexcept { return front_->index; }
 const PageStore& StoreFile::pages() const noexcept { return *pages_; }
 const PointDirectory* StoreFile::directory() const noexcept { return directory_.get(); }
 const Floor* StoreFile::floor() const {
@@ -190,13 +193,25 @@ StoreFile::PageInfo StoreFile::page_info(PageId id) const {
           star_attributes_of(d, front_->facts.heights)};
 }
 
-void StoreFile::look_at(PageId id, const Look& look, IoCounters& counters) const {
+/// The heights of local pages' vertices; null where the file has none.
+SampleHeights* StoreFile::used(SampleHeights& heights, IoCounters& counters) const {
+  const Floor* const floor = front_->form.is_plain() ? nullptr : this->floor();
+  if (floor == nullptr) {
+    return nullptr;
+  }
+  heights.use(*floor, counters);
+  return &heights;
+}
+
+void StoreFile::look_at(PageId id, const Look& look, SampleHeights& heights,
+                        IoCounters& counters) const {
   const layout::NodeEntry d = nodes_->descriptor(id);
   PageBuffer buffer;
   const std::span<const std::byte> bytes =
       pages_->view_described(id, d, buffer.of(front_->slots.page_bytes), counters);
   try {
-    look(RecordPage(file_->path(), id, d, front_->facts.heights, bytes));
+    look(RecordPage(file_->path(), id, d, front_->facts.heights, front_->form, bytes,
+                    used(heights, counters)));
     pages_->require_undamaged();
   } catch (const Error&) {
     pages_->require_undamaged();  // Lost bytes are the cause, where there are any.
@@ -204,12 +219,25 @@ void StoreFile::look_at(PageId id, const Look& look, IoCounters& counters) const
   }
 }
 
-void StoreFile::look_at(const DirectoryPage& named, const Look& look, IoCounters& counters) const {
+void StoreFile::look_at(const DirectoryPage& named, const Look& look, SampleHeights& heights,
+                        IoCounters& counters) const {
   PageBuffer buffer;
   const std::span<std::byte> bytes = buffer.of(front_->slots.page_bytes);
   pages_->read_checked(named.id, named.checksum, bytes, counters);
   look(RecordPage(file_->path(), named.id, descriptor_of(*front_, named, bytes),
-                  front_->facts.heights, bytes));
+                  front_->facts.heights, front_->form, bytes, used(heights, counters)));
+}
+
+void StoreFile::announce(std::span<const PageId> ids, SampleHeights& heights,
+                         IoCounters& counters) const {
+  pages_->announce(ids, counters);
+  std::vector<GridBox> boxes;
+  // Near tiles are not announced: most of them are in memory.
+  for (const PageId id : pages_->is_far() ? ids : std::span<const PageId>()) {
+    const layout::NodeEntry d = nodes_->descriptor(id);
+    boxes.push_back({d.star_min_x, d.star_min_y, d.star_max_x, d.star_max_y});
+  }
+  announce_heights(boxes, heights, counters);
 }
 
 void StoreFile::announce(std::span<const DirectoryPage> pages,
@@ -220,22 +248,56 @@ void StoreFile::announce(std::span<const DirectoryPage> pages,
   }
 }
 
-void StoreFile::read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const {
-  append(*this, id, out, counters, [&](const RecordPage& page) { page.decode(out); });
+void StoreFile::announce_heights(std::span<const GridBox> stars, SampleHeights& heights,
+                                 IoCounters& counters) const {
+  if (!pages_->is_far() || used(heights, counters) == nullptr) return;
+  std::vector<GridBox> local;
+  std::ranges::copy_if(stars, std::back_inserter(local), is_local_box);
+  heights.announce(local);
 }
 
-void StoreFile::read_starred(PageId id, StarredRecords& out, IoCounters& counters) const {
-  append(*this, id, out, counters, [&](const RecordPage& page) { page.decode(out); });
+void StoreFile::announce_heights_around(std::span<const GridBox> places, SampleHeights& heights,
+                                        IoCounters& counters) const {
+  if (!pages_->is_far() || used(heights, counters) == nullptr) return;
+  // Stars of local pages, which reach over nine tiles at most, hardly ever have longer sides. Those that
+  // have cost a round more.
+  constexpr std::int32_t kReach = 32;
+  // Pages of larger places tell which of many tiles are wanted.
+  constexpr std::int64_t kLargest = 128;
+  const auto is_large = [](const GridBox& b) {
+    return std::int64_t{b.max_x} - b.min_x > kLargest || std::int64_t{b.max_y} - b.min_y > kLargest;
+  };
+  std::vector<GridBox> around;
+  for (const GridBox& place : places) {
+    if (is_large(place)) continue;
+    around.push_back({std::max(place.min_x, kReach) - kReach,
+                      std::max(place.min_y, kReach) - kReach,
+                      std::min(place.max_x, kGridMax - kReach) + kReach,
+                      std::min(place.max_y, kGridMax - kReach) + kReach});
+  }
+  heights.announce_known(around);
+}
+
+void StoreFile::read_records(PageId id, std::vector<VertexSplit>& out, SampleHeights& heights,
+                             IoCounters& counters) const {
+  append(*this, id, out, heights, counters, [&](const RecordPage& page) { page.decode(out); });
+}
+
+void StoreFile::read_starred(PageId id, StarredRecords& out, SampleHeights& heights,
+                             IoCounters& counters) const {
+  append(*this, id, out, heights, counters, [&](const RecordPage& page) { page.decode(out); });
 }
 
 std::uint32_t StoreFile::read_matching(PageId id, const AttributePredicate& predicate,
-                                       std::vector<VertexSplit>& out, IoCounters& counters) const {
-  return append_matching(*this, id, predicate, out, counters);
+                                       std::vector<VertexSplit>& out, SampleHeights& heights,
+                                       IoCounters& counters) const {
+  return append_matching(*this, id, predicate, out, heights, counters);
 }
 
 std::uint32_t StoreFile::read_matching(PageId id, const AttributePredicate& predicate,
-                                       std::vector<PendingSplit>& out, IoCounters& counters) const {
-  return append_matching(*this, id, predicate, out, counters);
+                                       std::vector<PendingSplit>& out, SampleHeights& heights,
+                                       IoCounters& counters) const {
+  return append_matching(*this, id, predicate, out, heights, counters);
 }
 
 std::shared_ptr<const StoreFile> StoreFile::open(const std::string& path, PageAccess access,

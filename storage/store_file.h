@@ -27,6 +27,7 @@
 namespace ptin {
 
 class DescribedPageStore;
+class IndexShape;
 class Floor;
 class IndexNodes;
 class MappedFile;
@@ -37,6 +38,7 @@ class ReadableFile;
 class ReadOnlyFile;
 class RecordPage;
 struct DirectoryPage;
+class SampleHeights;
 struct StoreFront;
 
 /// One bin of the table of errors: the records with error in (previous upper, upper]. Bins ascend,
@@ -100,6 +102,8 @@ class StoreFile {
   [[nodiscard]] const RecordIndex& index() const noexcept;  ///< The packed R-tree.
   /// The same, for searches of stars (storage/packed_rtree.h).
   [[nodiscard]] const PackedRTree& star_index() const noexcept;
+  /// Levels and nodes of the packed R-tree.
+  [[nodiscard]] const IndexShape& index_shape() const noexcept;
   [[nodiscard]] const PageStore& pages() const noexcept;
   /// The directory, for points of a file that lies elsewhere; null when it does not, or has none.
   [[nodiscard]] const PointDirectory* directory() const noexcept;
@@ -123,31 +127,50 @@ class StoreFile {
   /// Lets `look` look at a page where it lies. What it made of the page is worth nothing after an
   /// error: the file may lose bytes while they are looked at.
   /// @throws Error corruption, io_error; what `look` throws
-  void look_at(PageId id, const Look& look, IoCounters& counters) const;
+  /// @param heights  Of vertices of local pages; of the query that reads.
+  void look_at(PageId id, const Look& look, SampleHeights& heights, IoCounters& counters) const;
   /// The same of a page that the directory named, without its descriptor: stars are held against the
   /// bounds of the terrain, the page's largest error and its least death.
-  void look_at(const DirectoryPage& page, const Look& look, IoCounters& counters) const;
+  void look_at(const DirectoryPage& page, const Look& look, SampleHeights& heights,
+               IoCounters& counters) const;
 
   /// Decodes the records of a page, appending to `out`, each checked against the page's descriptor.
   /// On an error `out` is as before.
   /// @throws Error corruption, io_error
-  void read_records(PageId id, std::vector<VertexSplit>& out, IoCounters& counters) const;
+  void read_records(PageId id, std::vector<VertexSplit>& out, SampleHeights& heights,
+                    IoCounters& counters) const;
   /// As read_records(), with the stars.
-  void read_starred(PageId id, StarredRecords& out, IoCounters& counters) const;
+  void read_starred(PageId id, StarredRecords& out, SampleHeights& heights,
+                    IoCounters& counters) const;
   /// As read_records(), for those records alone whose attributes satisfy `predicate`. The others
   /// are not decoded, and not checked. Returns the number of records examined: all records of the
   /// page.
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
-                              std::vector<VertexSplit>& out, IoCounters& counters) const;
+                              std::vector<VertexSplit>& out, SampleHeights& heights,
+                              IoCounters& counters) const;
   std::uint32_t read_matching(PageId id, const AttributePredicate& predicate,
-                              std::vector<PendingSplit>& out, IoCounters& counters) const;
+                              std::vector<PendingSplit>& out, SampleHeights& heights,
+                              IoCounters& counters) const;
 
+  /// Announces pages that are read next, as PageStore; of a file that lies elsewhere the tiles too that
+  /// have the heights of local ones. `ids` ascend.
+  /// @throws Error corruption, io_error  what describes them, and the nodes above tiles, is read
+  void announce(std::span<const PageId> ids, SampleHeights& heights, IoCounters& counters) const;
   /// Announces pages that the directory named: each alone, since few are wanted of many.
   void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept;
+  /// Of a file that lies elsewhere announces the tiles that have the heights of local pages, by the boxes
+  /// of their stars. @throws Error corruption, io_error  the nodes above tiles are read
+  void announce_heights(std::span<const GridBox> stars, SampleHeights& heights,
+                        IoCounters& counters) const;
+  /// The same by small places that fine stars meet, before their pages are known. Where nodes above the
+  /// tiles are not at hand they are announced; so this is called once more when something was read.
+  void announce_heights_around(std::span<const GridBox> places, SampleHeights& heights,
+                               IoCounters& counters) const;
 
  private:
   StoreFile(std::unique_ptr<ReadOnlyFile> file, PageAccess access);
   explicit StoreFile(std::unique_ptr<RangedFile> file);
+  [[nodiscard]] SampleHeights* used(SampleHeights& heights, IoCounters& counters) const;
   void read_by_copies();
   void search_by_nodes();
 

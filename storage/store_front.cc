@@ -97,10 +97,14 @@ FileHeader read_header(const ReadableFile& file) {
   return h;
 }
 
+/// Whether the file may hold what no version that is known has.
+bool is_newer(const FileHeader& h) noexcept {
+  return h.minor_version > layout::newest_minor(h.major_version);
+}
+
 void check_header(const FileHeader& h, const ReadableFile& file) {
   const std::string& path = file.path();
-  require(h.major_version == layout::kMajorVersion, path,
-          "the header has major version 0, which no program wrote");
+  require(h.major_version != 0, path, "the header has major version 0, which no program wrote");
   require(h.header_bytes == sizeof h, path, "the header should say that it has 256 bytes");
   if (h.file_bytes != file.bytes()) {
     damaged(path, "the header says " + std::to_string(h.file_bytes) + " bytes, the file has " +
@@ -123,9 +127,8 @@ void check_header(const FileHeader& h, const ReadableFile& file) {
   // Reserved bytes of a later minor version may mean something; ours are zero.
   const bool zero =
       std::all_of(h.reserved.begin(), h.reserved.end(), [](std::uint8_t b) { return b == 0; });
-  require(
-      (zero && (h.flags & ~layout::kFreeOfVoids) == 0) || h.minor_version > layout::kMinorVersion,
-      path, "reserved bytes of the header are not zero");
+  require((zero && (h.flags & ~layout::kFreeOfVoids) == 0) || is_newer(h), path,
+          "reserved bytes of the header are not zero");
   const char* fault = fault_in(facts_of(h));
   require(fault == nullptr, path, fault);
 }
@@ -138,8 +141,7 @@ std::vector<SectionEntry> read_table(const FileHeader& h, const ReadableFile& fi
           "the section table does not match its checksum; the file is damaged");
   std::uint64_t end = sizeof h + table.size() * sizeof(SectionEntry);
   for (const SectionEntry& s : table) {
-    require(s.reserved == 0 || h.minor_version > layout::kMinorVersion, path,
-            "a reserved field of a section is not 0");
+    require(s.reserved == 0 || is_newer(h), path, "a reserved field of a section is not 0");
     require(s.offset % 8 == 0 && s.offset >= end && s.offset <= h.file_bytes &&
                 s.bytes <= h.file_bytes - s.offset,
             path, "a section lies outside of the file, or sections overlap or do not ascend");
@@ -227,11 +229,32 @@ std::vector<ErrorBin> read_bins(const std::vector<SectionEntry>& table, const Fi
   return bins;
 }
 
-void place_index_and_pages(StoreFront& front, const std::string& path) {
+/// Pages of each segment. A file of format 2 has a single one.
+std::vector<std::uint64_t> segments_of(const StoreFront& front, const ReadableFile& file) {
   const FileHeader& h = front.header;
+  std::vector<std::uint64_t> segments;
+  if (h.major_version == 2) {
+    if (h.page_count > 0) segments.push_back(h.page_count);
+    return segments;
+  }
+  std::uint64_t left = h.page_count;
+  for (const auto& s :
+       read_section<layout::SegmentEntry>(front.sections, SectionKind::kSegments, file)) {
+    const std::uint64_t pages = std::uint64_t{s.last} + 1;
+    require(pages <= left, file.path(), "the segments have more pages than there are");
+    left -= pages;
+    segments.push_back(pages);
+  }
+  require(left == 0, file.path(), "the segments have fewer pages than there are");
+  return segments;
+}
+
+void place_index_and_pages(StoreFront& front, const ReadableFile& file) {
+  const FileHeader& h = front.header;
+  const std::string& path = file.path();
   const SectionEntry& index = find(front.sections, SectionKind::kIndex, path);
   const SectionEntry& pages = find(front.sections, SectionKind::kPages, path);
-  front.index = IndexShape(h.page_count);
+  front.index = IndexShape(segments_of(front, file));
   require(index.bytes == front.index.total_bytes(), path,
           "the index has not the length that the number of pages asks for");
   require(index.offset % layout::kNodeBytes == 0, path,
@@ -315,6 +338,8 @@ const char* name_of(SectionKind kind) noexcept {
       return "height nodes";
     case SectionKind::kFloorPages:
       return "heights";
+    case SectionKind::kSegments:
+      return "segments";
   }
   return "unknown";
 }
@@ -326,11 +351,14 @@ void announce_front(const StoreFront& front, const ReadableFile& file) {
     return;
   }
   constexpr std::uint64_t kMostUpperNodes = 16;
-  const IndexShape& index = front.index;
-  const std::uint64_t upper =
-      index.levels() < 2 ? index.total_nodes() : index.total_nodes() - index.nodes(0);
-  const ByteRange whole{0,
-                        front.index_offset + std::min(upper, kMostUpperNodes) * layout::kNodeBytes};
+  // The segments, which come with it, tell exactly; they add few leaves and hardly ever a node above.
+  const IndexShape index(front.header.page_count);
+  const SectionEntry* const place = find_any(front.sections, SectionKind::kIndex, file.path());
+  if (place == nullptr) {
+    return;  // told by who needs it
+  }
+  const std::uint64_t upper = std::min(index.upper_nodes(), kMostUpperNodes);
+  const ByteRange whole{0, place->offset + std::min(upper * layout::kNodeBytes, place->bytes)};
   file.will_need(std::span(&whole, 1));
 }
 
@@ -340,10 +368,11 @@ StoreFront read_front(const ReadableFile& file) {
   check_header(front.header, file);
   front.facts = facts_of(front.header);
   front.sections = read_table(front.header, file);
-  place_index_and_pages(front, file.path());
+  announce_front(front, file);
+  place_index_and_pages(front, file);
   front.directory = place_of_directory(front, file.path());
   front.floor = place_of_floor(front, file.path());
-  announce_front(front, file);
+  front.form = {front.header.major_version, front.floor.has_value()};
   const std::vector<char> metadata =
       read_section<char>(front.sections, SectionKind::kMetadata, file);
   front.metadata.assign(metadata.begin(), metadata.end());

@@ -13,6 +13,7 @@
 #include "storage/floor.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
+#include "storage/page_columns.h"
 #include "storage/page_slots.h"
 #include "storage/point_directory.h"
 #include "storage/store_file.h"
@@ -24,6 +25,7 @@ struct StoreFront {
   /// Ascending by offset. Sections of unknown kinds, from later minor versions, are among them.
   std::vector<layout::SectionEntry> sections;
   StoreFacts facts;
+  PageForm form;
   std::string metadata;
   CoarsestTin t0;
   std::vector<ErrorBin> bins;

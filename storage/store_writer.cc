@@ -28,6 +28,9 @@ namespace ptin {
 
 namespace {
 
+/// What the journal of an unfinished build writes to NodeEntry::reserved of the last page of a segment.
+constexpr std::uint32_t kEndsSegment = 1;
+
 constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
   return (bytes + unit - 1) / unit * unit;
 }
@@ -135,6 +138,21 @@ std::vector<layout::T0Triangle> stored(const std::vector<CoarsestTin::T>& triang
   return result;
 }
 
+std::vector<layout::SegmentEntry> stored(const std::vector<std::uint64_t>& segments) {
+  std::vector<layout::SegmentEntry> result;
+  for (const std::uint64_t pages : segments) {
+    result.push_back({static_cast<std::uint16_t>(pages - 1)});
+  }
+  return result;
+}
+
+/// The same walk, with the names of pages for their numbers. Borrows both.
+PageWalk named(const PageWalk& walk, const PageNames& names) {
+  return [&](const PageVisitor& visit) {
+    walk([&](std::uint64_t page, const layout::NodeEntry& d) { visit(names.of(page), d); });
+  };
+}
+
 ScratchFile kept_file(FileLayer& files, const std::string& path) {
   return ScratchFile(files, path, ScratchFile::kept_at(path));
 }
@@ -198,9 +216,12 @@ void StoreWriter::add_placed(const PackedSegment& segment, const HeightEncoding&
   for (const layout::NodeEntry& entry : segment.descriptors) {
     index_->add(entry);
     if (journal_) {
-      journal_->add(entry);
+      layout::NodeEntry kept = entry;
+      kept.reserved = &entry == &segment.descriptors.back() ? kEndsSegment : 0;
+      journal_->add(kept);
     }
   }
+  index_->end_segment();
   count(segment.errors, segment.max_rank);
   written_bytes_ += segment.descriptors.size() * options_.page_bytes;
 }
@@ -248,7 +269,12 @@ void StoreWriter::take_back(const layout::NodeEntry& entry, std::vector<std::byt
                     " of the unfinished build is damaged",
                 path_);
   }
-  index_->add(entry);
+  layout::NodeEntry described = entry;
+  described.reserved = 0;
+  index_->add(described);
+  if (entry.reserved == kEndsSegment) {
+    index_->end_segment();
+  }
   written_bytes_ += page.size();
 }
 
@@ -327,18 +353,23 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
     refuse(fault, path_);
   }
   start(facts.heights);
-  const IndexShape shape(index_->pages());
+  index_->finish();
+  const IndexShape shape(index_->segments());
+  const PageNames names(shape, true);
   const PageWalk walk = [&](const PageVisitor& visit) { index_->walk(visit); };
   std::optional<DirectoryWriter> directory;
-  if (index_->pages() >= options_.directory.least_pages) {
+  if (index_->pages() >= options_.directory.least_pages && names.are_known()) {
     directory = DirectoryWriter::plan(facts.bounds, index_->pages(), options_.page_bytes,
                                       options_.directory, walk);
   }
   const bool has_floor = !floor_nodes_.empty();
-  Front front(6 + (directory ? 2 : 0) + (has_floor ? 3 : 0));
+  Front front(7 + (directory ? 2 : 0) + (has_floor ? 3 : 0));
   const std::vector<layout::T0Vertex> vertices = stored(t0.vertices, facts.heights.type);
   const std::vector<layout::T0Triangle> triangles = stored(t0.triangles);
   const std::vector<layout::ErrorBinEntry> bins = stored(errors_.bins());
+  const std::vector<layout::SegmentEntry> segments = stored(index_->segments());
+  // The index is found with them, so a far file wants them first.
+  front.add(layout::SectionKind::kSegments, std::as_bytes(std::span(segments)));
   front.add(layout::SectionKind::kMetadata, std::as_bytes(std::span(metadata_json)));
   front.add(layout::SectionKind::kT0Vertices, std::as_bytes(std::span(vertices)));
   front.add(layout::SectionKind::kT0Triangles, std::as_bytes(std::span(triangles)));
@@ -368,7 +399,7 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
   const PageSlots slots = move_pages_behind(front_bytes);
   if (directory) {
     front.section(layout::SectionKind::kDirectoryNodes).checksum =
-        directory->write_nodes(walk, file_, index_end);
+        directory->write_nodes(named(walk, names), file_, index_end);
     front.fill(layout::SectionKind::kDirectory, directory->root());
   }
   front.section(layout::SectionKind::kIndex).checksum = index_->write_to(file_, index_offset);
@@ -378,9 +409,7 @@ void StoreWriter::publish(const StoreFacts& facts, const CoarsestTin& t0,
 
   header.magic = layout::kMagic;
   header.major_version = layout::kMajorVersion;
-  header.minor_version = has_floor   ? layout::kMinorVersionOfFloor
-                         : directory ? layout::kMinorVersionOfDirectory
-                                     : 0;
+  header.minor_version = 0;
   header.header_bytes = sizeof header;
   header.page_bytes = options_.page_bytes;
   header.page_count = slots.pages;

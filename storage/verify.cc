@@ -40,6 +40,7 @@ class Verifier {
 
  private:
   void report(std::string what, std::string where);
+  void open_floor();
   void look_at_sections();
   void check_stop() const;
   void read_in_parts(std::uint64_t begin, std::uint64_t end,
@@ -69,6 +70,9 @@ class Verifier {
   VerifyReport& report_;
 
   StoreFront front_;
+  std::unique_ptr<const Floor> floor_;  ///< Null: there is none, or it is damaged.
+  SampleHeights samples_;
+  IoCounters io_;
   std::optional<UniqueKeys> keys_;
   std::uint64_t pass_ = 0;
   std::uint64_t pages_done_ = 0;
@@ -116,6 +120,7 @@ void Verifier::run() {
     return;
   }
   page_.resize(front_.facts.page_bytes);
+  open_floor();
   look_at_sections();
   for (const std::string& fault : faults_of_cover(front_.t0, front_.facts.bounds)) {
     report(fault, "T0");
@@ -141,6 +146,22 @@ void Verifier::run() {
         [this] { check_stop(); });
   }
   file_.check_unchanged();
+}
+
+// The heights that local pages leave to the raster's samples. What is wrong with their root,
+// verify_floor() tells.
+void Verifier::open_floor() {
+  if (!front_.floor) {
+    return;
+  }
+  try {
+    floor_ = std::make_unique<const Floor>(file_, *front_.floor, front_.facts);
+    samples_.use(*floor_, io_);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::corruption) {
+      throw;
+    }
+  }
 }
 
 // Everything before the index and the pages: gaps, metadata, and sections of later minor versions.
@@ -220,14 +241,20 @@ void Verifier::look_at_directory() {
     report(e.message(), where);
     return;
   }
+  const PageNames names(front_.index, !front_.form.is_plain());
+  if (!names.are_known()) {
+    report("pages have no names in it: there are too many of them", where);
+    return;
+  }
   const PageWalk walk = [&](const PageVisitor& visit) {
     layout::IndexNode leaf;
+    std::uint64_t page = 0;
     for (std::uint64_t number = 0; number < front_.index.nodes(0); ++number) {
       check_stop();
       file_.read_at(std::as_writable_bytes(std::span(&leaf, 1)),
                     front_.index_offset + front_.index.position(0, number) * layout::kNodeBytes);
       for (std::uint32_t i = 0; i < front_.index.entries(0, number); ++i) {
-        visit(number * layout::kFanOut + i, leaf.entry[i]);
+        visit(names.of(page++), leaf.entry[i]);
       }
     }
   };
@@ -260,7 +287,8 @@ std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std
                 front_.index_offset + front_.index.position(level, number) * layout::kNodeBytes);
   const std::uint32_t entries = front_.index.entries(level, number);
   const bool is_damaged = checksum_of_object(node) != checksum;
-  if (is_damaged || node.level != level || node.number != number || node.entries != entries) {
+  if (is_damaged || node.level != level || node.number != front_.index.name_of(level, number) ||
+      node.entries != entries) {
     all_seen_ = false;
     if (pass_ == 0) {
       report(
@@ -280,9 +308,9 @@ std::optional<layout::NodeEntry> Verifier::look_at_node(std::uint32_t level, std
     report("unused entries are not zero", where);
   }
   Descriptor all(front_.facts.heights);
+  const std::uint64_t first = front_.index.first_child(level, number);
   for (std::uint32_t i = 0; i < entries; ++i) {
-    look_at_entry(level, node.entry[i], number * layout::kFanOut + i,
-                  where + ", entry " + std::to_string(i));
+    look_at_entry(level, node.entry[i], first + i, where + ", entry " + std::to_string(i));
     all.add(node.entry[i]);
   }
   return all.entry();
@@ -345,7 +373,9 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
       }
       return false;
     }
-    RecordPage(file_.path(), id, descriptor, front_.facts.heights, page_).decode(records_);
+    RecordPage(file_.path(), id, descriptor, front_.facts.heights, front_.form, page_,
+               floor_ != nullptr ? &samples_ : nullptr)
+        .decode(records_);
     if (pass_ == 0 && !is_packed_so()) {
       report("the page does not hold its records as they are to be packed", page_name(id));
     }
@@ -364,7 +394,8 @@ bool Verifier::read_page(PageId id, const layout::NodeEntry& descriptor) {
 // Whether page_ is what a writer makes of records_: bases and widths are the least, and what is
 // unused is zero.
 bool Verifier::is_packed_so() const {
-  PagePacker packer(front_.facts.page_bytes, front_.facts.heights, false);
+  PagePacker packer(front_.facts.page_bytes, front_.facts.heights, front_.form,
+                    PagePacker::Packing::kAgain);
   for (std::size_t i = 0; i < records_.size(); ++i) {
     if (!packer.add(records_.splits[i], records_.ring(i))) {
       return false;
@@ -406,13 +437,23 @@ void Verifier::count_height(HeightBits bits) {
   ++vertices_with_height_;
 }
 
-// Whether the record's interval of heights lies within the header's. That the interval holds the
-// heights of u and of the ring, the page's reader has seen.
+// Whether the record's interval of heights lies within the header's, but for the unit to which it was
+// rounded outward. That the interval holds the heights of u and of the ring, the page's reader has seen.
 bool Verifier::has_heights_of_header(const VertexSplit& r) const {
   const StoreFacts& facts = front_.facts;
-  const Interval codes = attributes_of(r, facts.heights).heights;
-  return is_empty(codes) || (facts.heights.height_of_code(codes.lo) >= facts.min_height &&
-                             facts.heights.height_of_code(codes.hi) <= facts.max_height);
+  const HeightEncoding& heights = facts.heights;
+  if (is_empty(attributes_of(r, heights).heights)) {
+    return true;
+  }
+  const auto ordered = [&](HeightBits bits) { return ordered_height(bits, heights.type); };
+  const std::uint32_t lo = ordered(r.height_lo), hi = ordered(r.height_hi);
+  const std::uint32_t unit_bits = front_.form.is_plain() ? 0 : kept_interval({lo, lo, hi}).shift;
+  const auto height = [&](std::uint64_t o) {
+    return heights.height(height_of_ordered(static_cast<std::uint32_t>(o), heights.type));
+  };
+  const std::uint64_t unit = std::uint64_t{1} << unit_bits;
+  return height(std::min<std::uint64_t>(lo + unit - 1, hi)) >= facts.min_height &&
+         height(std::max<std::uint64_t>(hi - (unit - 1), lo)) <= facts.max_height;
 }
 
 void Verifier::compare_totals() {

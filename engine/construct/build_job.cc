@@ -335,8 +335,8 @@ void require_unchanged(Job& job) {
 
 void build_tiles(Workspace& workspace, Job& job, const TiledSource& source, const BuildPlan& plan,
                  const nlohmann::json& index) {
-  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame, job.files(),
-                    workspace.folder());
+  StoreOutput store(job.output, job.options, job.resources.overwrite, source.frame,
+                    static_cast<bool>(source.add_floor), job.files(), workspace.folder());
   if (!job.begin(index, &workspace)) {
     job.goes_on_elsewhere = true;
     // Hours of work will be in the folder, of which its manifest does not know: no error may remove

@@ -92,7 +92,8 @@ void BuildWorker::Impl::open_to_read(const SourceOptions& options, const BuildNo
 
 void BuildWorker::Impl::open_tiles(const BuildOptions& options, const BuildNote& note) {
   tiles = take_up_source(inputs, options, note.index, note.temporary, files, resources.stop);
-  packer = std::make_unique<StorePacker>(options, tiles->frame, files, note.folder);
+  packer = std::make_unique<StorePacker>(options, tiles->frame, static_cast<bool>(tiles->add_floor),
+                                         files, note.folder);
   worker = std::make_unique<TileWorker>(TaskSetup{tiles->tree, collapse_options(options, *tiles),
                                                   tiles->make_starter, *packer, files,
                                                   note.temporary, true, resources.patience});

@@ -121,10 +121,12 @@ StoreWriterOptions writer_options(const BuildOptions& options, bool overwrite, F
 
 }  // namespace
 
-StorePacker::StorePacker(const BuildOptions& options, const TerrainFrame& frame, FileLayer& files,
-                         std::string work_folder)
+StorePacker::StorePacker(const BuildOptions& options, const TerrainFrame& frame, bool is_raster,
+                         FileLayer& files, std::string work_folder)
     : detail_{frame.height_rounding, options.max_error},
       heights_(frame.heights),
+      // Flat parts that --max-error leaves out leave an error of 0 behind, but not each sample a vertex.
+      form_{.has_floor = is_raster && options.max_error <= 0.0 && frame.height_rounding == 0.0},
       page_bytes_(options.page_bytes),
       files_(files),
       work_folder_(std::move(work_folder)) {}
@@ -136,7 +138,7 @@ PreparedSegment StorePacker::prepare(StarredRecords& records) const {
       std::count_if(records.splits.begin(), records.splits.end(),
                     [](const VertexSplit& r) { return (r.flags & VertexSplit::kAnyVoid) != 0; }));
   const RecordBounds left_out = detail_.leave_out(records);
-  return {pack_segment(records, heights_, page_bytes_), left_out, void_records};
+  return {pack_segment(records, heights_, form_, page_bytes_), left_out, void_records};
 }
 
 void StorePacker::place(std::span<const std::byte> pages, std::uint64_t offset) const {
@@ -145,13 +147,13 @@ void StorePacker::place(std::span<const std::byte> pages, std::uint64_t offset) 
 }
 
 StoreOutput::StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-                         const TerrainFrame& frame, FileLayer& files,
+                         const TerrainFrame& frame, bool is_raster, FileLayer& files,
                          const std::string& work_folder)
     : path_(path),
       options_(options),
       frame_(frame),
       writer_(StoreWriter::create(path, writer_options(options, overwrite, files, work_folder))),
-      packer_(options, frame, files, work_folder),
+      packer_(options, frame, is_raster, files, work_folder),
       base_error_(frame.height_rounding),
       base_deviation_(frame.height_rounding) {}
 
@@ -200,8 +202,8 @@ void StoreOutput::resume(const nlohmann::json& position) {
 }
 
 void StoreOutput::add_floor(const std::function<KeptRaster(StoreWriter&)>& add) {
-  // Flat parts that --max-error leaves out leave an error of 0 behind, but not each sample a vertex.
-  if (options_.max_error <= 0.0 && base_error_ == 0.0) {
+  if (packer_.form().has_floor) {
+    PTIN_CHECK(base_error_ == 0.0);
     raster_ = add(*writer_);
   }
 }

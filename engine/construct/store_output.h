@@ -27,16 +27,19 @@ class StorePacker final : public SegmentPacker {
  public:
   /// @param files        Borrowed.
   /// @param work_folder  As StoreWriterOptions; its StoreWriter was made already.
-  StorePacker(const BuildOptions& options, const TerrainFrame& frame, FileLayer& files,
-              std::string work_folder);
+  /// @param is_raster    The source is one, and its samples will be added.
+  StorePacker(const BuildOptions& options, const TerrainFrame& frame, bool is_raster,
+              FileLayer& files, std::string work_folder);
 
   [[nodiscard]] PreparedSegment prepare(StarredRecords& records) const override;
   void place(std::span<const std::byte> pages, std::uint64_t offset) const override;
   [[nodiscard]] const StoredDetail& detail() const noexcept { return detail_; }
+  [[nodiscard]] const PageForm& form() const noexcept { return form_; }
 
  private:
   StoredDetail detail_;
   HeightEncoding heights_;
+  PageForm form_;
   std::uint32_t page_bytes_;
   FileLayer& files_;
   std::string work_folder_;
@@ -46,10 +49,12 @@ class StorePacker final : public SegmentPacker {
 /// publish(), it leaves nothing behind but what is in the work folder.
 class StoreOutput final : public SegmentOutput {
  public:
+  /// @param is_raster           As StorePacker.
   /// @param files, work_folder  As StoreWriterOptions.
   /// @throws Error as StoreWriter::create
   StoreOutput(const std::string& path, const BuildOptions& options, bool overwrite,
-              const TerrainFrame& frame, FileLayer& files, const std::string& work_folder);
+              const TerrainFrame& frame, bool is_raster, FileLayer& files,
+              const std::string& work_folder);
 
   [[nodiscard]] const SegmentPacker& packer() const override { return packer_; }
   /// @throws Error as StoreWriter::add_placed

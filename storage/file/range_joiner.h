@@ -16,12 +16,13 @@ namespace ptin {
 /// without memory. A hint: what there is no memory for is left out.
 class RangesToCome {
  public:
-  RangesToCome(const ReadableFile& file, IoCounters& counters) : file_(file), counters_(counters) {}
+  RangesToCome(const ReadableFile& file, IoCounters& counters, Coming coming = Coming::kInOrder)
+      : file_(file), counters_(counters), coming_(coming) {}
   RangesToCome(const RangesToCome&) = delete;
   RangesToCome& operator=(const RangesToCome&) = delete;
   ~RangesToCome() {
     if (file_.is_far()) {
-      file_.will_need(ranges_);
+      coming_ == Coming::kInOrder ? file_.will_need(ranges_) : file_.will_also_need(ranges_);
     }
   }
 
@@ -42,6 +43,7 @@ class RangesToCome {
  private:
   const ReadableFile& file_;
   IoCounters& counters_;
+  const Coming coming_;
   std::vector<ByteRange> ranges_;
 };
 

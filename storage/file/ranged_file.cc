@@ -129,7 +129,8 @@ void RangedFile::fetch(Number first, Number last, std::unique_lock<std::mutex>& 
 }
 
 /// The blocks to read now, ascending. What was announced is read in its order from the blocks wanted
-/// on; what was announced before them is left out, since it will not be read any more.
+/// on; what was announced before them is left out, since it will not be read any more. What goes with
+/// the next round goes with this one.
 std::vector<RangedFile::Number> RangedFile::wanted_round(Number first, Number last) const {
   const auto is_missing = [&](Number number) {
     return !under_way_.contains(number) && find(number) == nullptr;
@@ -154,21 +155,24 @@ std::vector<RangedFile::Number> RangedFile::wanted_round(Number first, Number la
     next = announced.begin();
   }
   std::size_t looked_at = numbers.size();
-  for (; next != announced.end() && looked_at < most; ++next) {
-    Number number = next->offset / kBlockBytes;
-    const Number end = (next->offset + next->bytes - 1) / kBlockBytes + 1;
-    for (; number < end && looked_at < most; ++number, ++looked_at) {
-      if ((number < first || number > last) && is_missing(number)) {
-        numbers.push_back(number);
+  // What does not fit is for the next round.
+  const auto take = [&](std::vector<ByteRange>& ranges, std::vector<ByteRange>::iterator from) {
+    for (; from != ranges.end() && looked_at < most; ++from) {
+      Number number = from->offset / kBlockBytes;
+      const Number end = (from->offset + from->bytes - 1) / kBlockBytes + 1;
+      for (; number < end && looked_at < most; ++number, ++looked_at) {
+        if ((number < first || number > last) && is_missing(number)) numbers.push_back(number);
+      }
+      if (number < end) {
+        from->bytes -= number * kBlockBytes - from->offset;
+        from->offset = number * kBlockBytes;
+        break;
       }
     }
-    if (number < end) {  // The rest of the range is for the next round.
-      next->bytes -= number * kBlockBytes - next->offset;
-      next->offset = number * kBlockBytes;
-      break;
-    }
-  }
-  announced.erase(announced.begin(), next);
+    ranges.erase(ranges.begin(), from);
+  };
+  take(asker->second.also, asker->second.also.begin());
+  take(announced, next);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
@@ -256,12 +260,26 @@ void RangedFile::will_need(std::span<const ByteRange> ranges) const noexcept {
     const std::lock_guard lock(mutex_);
     std::vector<ByteRange>& announced = askers_[std::this_thread::get_id()].announced;
     announced.clear();
-    for (const ByteRange& range : ranges) {
-      if (range.bytes > 0 && range.offset < bytes()) {
-        announced.push_back({range.offset, std::min(range.bytes, bytes() - range.offset)});
-      }
-    }
+    for (const ByteRange& range : ranges) add_range(range, announced);
   } catch (...) {  // A hint: without memory for it, what is read comes one by one.
+  }
+}
+
+void RangedFile::will_also_need(std::span<const ByteRange> ranges) const noexcept {
+  try {
+    const std::lock_guard lock(mutex_);
+    std::vector<ByteRange>& also = askers_[std::this_thread::get_id()].also;
+    // A question that reads nothing more leaves its own behind, which must not grow.
+    constexpr std::size_t kMost = kMostRoundBytes / kBlockBytes;
+    if (also.size() + ranges.size() > kMost) also.clear();
+    for (const ByteRange& range : ranges) add_range(range, also);
+  } catch (...) {  // as above
+  }
+}
+
+void RangedFile::add_range(const ByteRange& range, std::vector<ByteRange>& to) const {
+  if (range.bytes > 0 && range.offset < bytes()) {
+    to.push_back({range.offset, std::min(range.bytes, bytes() - range.offset)});
   }
 }
 
@@ -296,6 +314,7 @@ void RangedFile::check_unchanged() const {
   const std::lock_guard lock(mutex_);
   if (const auto asker = askers_.find(std::this_thread::get_id()); asker != askers_.end()) {
     asker->second.announced.clear();
+    asker->second.also.clear();
   }
   if (is_replaced_) {
     throw Error(ErrorCode::corruption,

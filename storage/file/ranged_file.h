@@ -39,6 +39,7 @@ class RangedFile final : public ReadableFile {
   [[nodiscard]] std::uint64_t bytes() const noexcept override { return source_->bytes(); }
   void read_at(std::span<std::byte> out, std::uint64_t offset) const override;
   void will_need(std::span<const ByteRange> ranges) const noexcept override;
+  void will_also_need(std::span<const ByteRange> ranges) const noexcept override;
   [[nodiscard]] bool is_far() const noexcept override { return true; }
   [[nodiscard]] bool is_at_hand(const ByteRange& range) const noexcept override;
   void settle(IoCounters& counters) const noexcept override;
@@ -66,9 +67,11 @@ class RangedFile final : public ReadableFile {
   /// The counters of one thread, which is one question.
   struct Asker {
     std::vector<ByteRange> announced;  ///< In the order of reading.
+    std::vector<ByteRange> also;       ///< For the next round.
     Costs costs;
   };
 
+  void add_range(const ByteRange& range, std::vector<ByteRange>& to) const;
   void copy_piece(std::span<std::byte> out, std::uint64_t offset) const;
   [[nodiscard]] const std::byte* find(Number number) const;
   void fetch(Number first, Number last, std::unique_lock<std::mutex>& lock) const;

@@ -14,6 +14,9 @@
 
 namespace ptin {
 
+/// When announced ranges are wanted: one after the other, or with whatever is read next.
+enum class Coming { kInOrder, kWithNext };
+
 /// A file that is read at any place. Threads: const functions may be called at once.
 class ReadableFile {
  public:
@@ -32,6 +35,10 @@ class ReadableFile {
 
   /// Announces that these ranges are read next, by this thread, in this order. A hint: never fails.
   virtual void will_need(std::span<const ByteRange> ranges) const noexcept = 0;
+  /// Announces ranges that go with what this thread reads next, whatever that is. A hint: never fails.
+  virtual void will_also_need(std::span<const ByteRange> ranges) const noexcept {
+    will_need(ranges);
+  }
 
   /// True for files elsewhere, where one read that was not announced costs as much time as a whole
   /// announced batch: reading what will probably be wanted along with what is wanted pays there.

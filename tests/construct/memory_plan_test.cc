@@ -256,7 +256,7 @@ TEST_F(PlanBuild, SaysWhatTheDiskHas) {
   EXPECT_TRUE(near(p.output_free, space.available)) << p.output_free << " " << space.available;
   EXPECT_EQ(p.output_free, p.temporary_free);
   EXPECT_TRUE(p.same_disk);
-  EXPECT_GE(p.output_bytes, p.vertices * 52);
+  EXPECT_GE(p.output_bytes, p.vertices * 46);
   EXPECT_GE(p.temporary_bytes, p.vertices * 50);
 }
 

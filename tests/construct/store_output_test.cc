@@ -10,9 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/query/select/coarsest.h"
+#include "storage/sample_heights.h"
 #include "storage/short_float.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
+#include "tests/support/kept_interval.h"
 
 namespace ptin {
 namespace {
@@ -56,7 +58,7 @@ std::vector<VertexSplit> written(const oracle::TestTerrain& terrain, const Build
                                  double rounding, StoreFacts& facts, BuildReport& report) {
   const oracle::ScratchFolder folder;
   std::filesystem::create_directory(folder.file("work"));
-  StoreOutput output(folder.file("out.ptin"), options, false, frame_of(terrain, rounding),
+  StoreOutput output(folder.file("out.ptin"), options, false, frame_of(terrain, rounding), false,
                      FileLayer::system(), folder.file("work"));
   auto [first, second] = halves(terrain.tile);
   add_segment(output, first);
@@ -72,8 +74,9 @@ std::vector<VertexSplit> written(const oracle::TestTerrain& terrain, const Build
               oracle::named_triangles(terrain.tile.tin));
   std::vector<VertexSplit> all;
   IoCounters counters;
+  SampleHeights samples;
   for (std::uint64_t page = 0; all.size() < store->record_count(); ++page) {
-    store->read_records(PageId{page}, all, counters);
+    store->read_records(PageId{page}, all, samples, counters);
   }
   return all;
 }
@@ -84,11 +87,13 @@ std::vector<VertexSplit> sorted(std::vector<VertexSplit> records) {
   return records;
 }
 
-/// The records with the short numbers that a store keeps.
-std::vector<VertexSplit> shortened_records(std::vector<VertexSplit> records) {
+/// The records with the short numbers and the intervals that a store keeps.
+std::vector<VertexSplit> kept_records(const oracle::TestTerrain& terrain) {
+  std::vector<VertexSplit> records = terrain.tile.records;
   for (VertexSplit& r : records) {
     r.error = shortened(r.error);
     r.deviation = shortened(r.deviation);
+    test::keep_interval(r, terrain.tile.units.heights.type);
   }
   return records;
 }
@@ -97,8 +102,7 @@ TEST(StoreOutput, KeepsEveryRecordButForTheLengthOfItsNumbers) {
   const oracle::TestTerrain terrain = oracle::simplified(oracle::random_terrain(9, 400));
   StoreFacts facts;
   BuildReport report;
-  EXPECT_TRUE(sorted(written(terrain, {}, 0.0, facts, report)) ==
-              sorted(shortened_records(terrain.tile.records)));
+  EXPECT_TRUE(sorted(written(terrain, {}, 0.0, facts, report)) == sorted(kept_records(terrain)));
   EXPECT_EQ(facts.base_error, 0.0);
   EXPECT_EQ(facts.base_deviation, 0.0);
 }
@@ -124,7 +128,7 @@ TEST(StoreOutput, LeavesOutRecordsUpToTheLargestErrorAndKeepsTheirWorst) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     const oracle::TestTerrain terrain = oracle::simplified(oracle::random_terrain(seed, 300));
     BuildOptions options;
-    const std::vector<VertexSplit> all = shortened_records(terrain.tile.records);
+    const std::vector<VertexSplit> all = kept_records(terrain);
     options.max_error = all[all.size() / 2].error;
     if (!std::isfinite(options.max_error)) {
       continue;
@@ -153,7 +157,7 @@ TEST(StoreOutput, LeavesNothingBehindButItsWorkWithoutPublish) {
   const oracle::ScratchFolder folder;
   {
     std::filesystem::create_directory(folder.file("work"));
-    StoreOutput output(folder.file("out.ptin"), {}, false, frame_of(terrain, 0.0),
+    StoreOutput output(folder.file("out.ptin"), {}, false, frame_of(terrain, 0.0), false,
                        FileLayer::system(), folder.file("work"));
     auto records = halves(terrain.tile).first;
     add_segment(output, records);

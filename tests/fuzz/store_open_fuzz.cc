@@ -19,6 +19,7 @@
 #include "engine/query/living/living_page.h"
 #include "storage/floor.h"
 #include "storage/point_directory.h"
+#include "storage/sample_heights.h"
 #include "storage/store_file.h"
 #include "storage/verify.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -43,6 +44,7 @@ void use_floor(const StoreFile& store) {
     return;
   }
   IoCounters counters;
+  SampleHeights samples;
   Floor::Recent recent;
   floor->visit([](const Floor::Bounds&) { return true; },
                [](const Floor::TileAt&, const FloorTile&) { return true; }, recent, counters);
@@ -51,6 +53,7 @@ void use_floor(const StoreFile& store) {
 void use(const std::string& path, PageAccess access) {
   const auto store = StoreFile::open(path, access);
   IoCounters counters;
+  SampleHeights samples;
   std::vector<PageId> pages;
   std::vector<VertexSplit> records;
   try {
@@ -65,13 +68,13 @@ void use(const std::string& path, PageAccess access) {
   for (std::uint64_t i = 0; i < store->pages().page_count() && i < 200; ++i) {
     try {
       records.clear();
-      store->read_records(PageId{i}, records, counters);
+      store->read_records(PageId{i}, records, samples, counters);
       StarredRecords starred;
-      store->read_starred(PageId{i}, starred, counters);
+      store->read_starred(PageId{i}, starred, samples, counters);
       if (starred.splits != records) {
         std::abort();
       }
-      store->read_matching(PageId{i}, LargeErrors(), records, counters);
+      store->read_matching(PageId{i}, LargeErrors(), records, samples, counters);
     } catch (const Error&) {
     }
   }
@@ -90,6 +93,7 @@ void use_far(const ptin::test::Bytes& file) {
                                     {b.min_x, b.max_y, b.min_x, b.max_y}};
   std::vector<std::vector<DirectoryPage>> found(places.size());
   IoCounters counters;
+  SampleHeights samples;
   store->directory()->find(places, {}, found, counters);
   for (const std::vector<DirectoryPage>& pages : found) {
     store->announce(pages, counters);
@@ -100,7 +104,7 @@ void use_far(const ptin::test::Bytes& file) {
         take_living(p, {}, living);
         p.decode(stars);
       };
-      store->look_at(page, look, counters);
+      store->look_at(page, look, samples, counters);
     }
   }
 }

@@ -16,6 +16,7 @@
 #include "engine/query/questions.h"
 #include "storage/directory_writer.h"
 #include "storage/packed_segment.h"
+#include "storage/sample_heights.h"
 #include "storage/store_writer.h"
 #include "tests/storage/noting_source.h"
 #include "tests/support/test_folder.h"
@@ -55,10 +56,12 @@ struct WithDirectory {
     const auto writer = StoreWriter::create(path, {.overwrite = true, .directory = directory});
     StarredRecords records;
     IoCounters counters;
+    SampleHeights samples;
     for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
-      store.read_starred(PageId{i}, records, counters);
+      store.read_starred(PageId{i}, records, samples, counters);
     }
-    writer->add_segment(pack_segment(records, store.facts().heights, 4096), store.facts().heights);
+    writer->add_segment(pack_segment(records, store.facts().heights, {}, 4096),
+                        store.facts().heights);
     writer->publish(store.facts(), store.t0(), std::string(store.metadata_json()));
     bytes = bytes_of(path);
   }

@@ -22,6 +22,7 @@
 #include "engine/query/select/coarsest.h"
 #include "storage/short_float.h"
 #include "storage/store_writer.h"
+#include "tests/support/kept_interval.h"
 #include "tests/support/replayed_stars.h"
 
 namespace ptin::reference {
@@ -248,6 +249,7 @@ class Simplifier {
 
   void finish() {
     result_.t0 = coarsest_of(tin_);
+    for (VertexSplit& r : result_.records) test::keep_interval(r, kHeights.type);
     result_.stars =
         test::replayed_stars(mesh_of(result_.t0, "reference"), result_.t0, result_.records);
     StoreFacts& facts = result_.facts;

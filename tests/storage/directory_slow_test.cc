@@ -11,6 +11,7 @@
 #include "storage/directory_writer.h"
 #include "storage/file/checksum.h"
 #include "storage/file/ranged_file.h"
+#include "storage/index_writer.h"
 #include "storage/point_directory.h"
 #include "tests/storage/noting_source.h"
 #include "tests/storage/store_fixture.h"
@@ -53,20 +54,43 @@ void made_pages(const PageVisitor& visit) {
   }
 }
 
+/// The segments of a file of which each task of the build made 300 pages.
+std::vector<std::uint64_t> segments_of_tasks(const TestFolder& folder) {
+  constexpr std::uint64_t kTaskPages = 300;
+  IndexWriter index(FileLayer::system(), folder.path().string(), "i", HeightEncoding{});
+  for (std::uint64_t page = 0; page < kPages; ++page) {
+    if (page % kTaskPages == 0) index.end_segment();
+    index.add({});
+  }
+  index.finish();
+  return index.segments();
+}
+
 TEST(DirectorySlow, NamesThePagesOfAPointByOneShortNodeOfAStoreOf1E9Vertices) {
   constexpr std::uint32_t kPageBytes = 4096;
   const GridBox bounds{0, 0, kSide, kSide};
   const TestFolder folder;
   auto directory = DirectoryWriter::plan(bounds, kPages, kPageBytes, {}, made_pages);
   ASSERT_TRUE(directory.has_value());
-  // With 8 KiB of metadata, T0 and error table it comes with the opening.
-  EXPECT_LE(directory->root_bytes(), std::uint64_t{56} << 10);
+  const std::vector<std::uint64_t> segments = segments_of_tasks(folder);
+  // With 8 KiB of metadata, T0 and error table they come with the opening.
+  EXPECT_LE(directory->root_bytes() + segments.size() * sizeof(layout::SegmentEntry),
+            std::uint64_t{56} << 10);
   EXPECT_LE(directory->node_bytes() * 200, kPages * kPageBytes) << "half a percent of the pages";
+  const IndexShape shape(segments);
+  ASSERT_EQ(shape.pages(), kPages);
+  const PageNames names(shape, true);
+  ASSERT_TRUE(names.are_known());
   std::vector<std::byte> root;
   const std::uint64_t nodes_at = std::uint64_t{60} << 10;
   {
     ScratchFile out(FileLayer::system(), folder.file("d"), ScratchFile::Kept::kNew);
-    directory->write_nodes(made_pages, out, nodes_at);
+    directory->write_nodes(
+        [&](const PageVisitor& visit) {
+          made_pages(
+              [&](std::uint64_t page, const layout::NodeEntry& d) { visit(names.of(page), d); });
+        },
+        out, nodes_at);
     root = directory->root();
     out.write_at(root, 0);
   }
@@ -79,7 +103,7 @@ TEST(DirectorySlow, NamesThePagesOfAPointByOneShortNodeOfAStoreOf1E9Vertices) {
   constexpr int kPoints = 300;
   const RangedFile file(source, {});
   for (int i = 0; i < kPoints; ++i) {
-    const PointDirectory read(file, place, bounds, kPages);
+    const PointDirectory read(file, place, bounds, names);
     const auto x = static_cast<std::int32_t>(random() % kSide);
     const auto y = static_cast<std::int32_t>(random() % kSide);
     const GridBox at{x, y, x + 1, y + 1};

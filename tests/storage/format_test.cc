@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The bytes of formats 2.0 to 2.2 are fixed: the golden files are written as they were, are read as
-// they were, and that of 2.0 is the worked example of FORMAT.md.
+// The bytes of the format are fixed: the golden files are written as they were, are read as they were,
+// as those of format 2 are, and one is the worked example of FORMAT.md.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -23,16 +23,16 @@ namespace fs = std::filesystem;
 
 // This file's folder, from where the golden file and FORMAT.md are found.
 fs::path here() { return fs::path(__FILE__).parent_path(); }
-std::string golden() { return (here() / "golden" / "two_records_v2.0.ptin").string(); }
+std::string golden() { return (here() / "golden" / "two_records_v3.0.ptin").string(); }
 
 // The same with a directory of one cell.
 std::string golden_with_directory() {
-  return (here() / "golden" / "two_records_v2.1.ptin").string();
+  return (here() / "golden" / "with_directory_v3.0.ptin").string();
 }
 const StoreWriterOptions kWithDirectory{.overwrite = true, .directory = {.least_pages = 1}};
 
 // A raster of four samples, with its heights.
-std::string golden_with_floor() { return (here() / "golden" / "small_raster_v2.2.ptin").string(); }
+std::string golden_with_floor() { return (here() / "golden" / "small_raster_v3.0.ptin").string(); }
 
 // Bytes as FORMAT.md has them.
 std::string hex_of(std::span<const std::byte> bytes) {
@@ -71,9 +71,9 @@ TEST(Format, ReadsTheGoldenFileWithADirectory) {
   for (const SectionInfo& s : store->sections()) {
     names.push_back(s.name);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "metadata", "t0 vertices",
-                                             "t0 triangles", "error table", "directory", "index",
-                                             "directory nodes", "pages"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "segments", "metadata",
+                                             "t0 vertices", "t0 triangles", "error table",
+                                             "directory", "index", "directory nodes", "pages"}));
   // What FORMAT.md says of both sections.
   const Bytes file = read_file(golden_with_directory());
   const auto root = section_of(file, layout::SectionKind::kDirectory);
@@ -112,6 +112,21 @@ TEST(Format, ReadsTheGoldenFileWithHeights) {
   expect_in_document(hex_of(std::span(file).subspan(pages.offset, 34)));
 }
 
+// Nothing writes format 2 any more; what was written stays readable, and sound.
+TEST(Format, ReadsTheGoldenFilesOfFormat2) {
+  for (const char* const name : {"two_records_v2.0.ptin", "two_records_v2.1.ptin"}) {
+    const std::string path = (here() / "golden" / name).string();
+    EXPECT_TRUE(verify_store(path).is_sound()) << name;
+    const auto store = StoreFile::open(path);
+    EXPECT_EQ(store->facts(), two_records().facts);
+    EXPECT_TRUE(are_same(read_all_starred(*store), two_records().segments[0])) << name;
+    EXPECT_EQ(store->sections().size(), std::string(name) == "two_records_v2.1.ptin" ? 10U : 8U);
+  }
+  const std::string raster = (here() / "golden" / "small_raster_v2.2.ptin").string();
+  EXPECT_TRUE(verify_store(raster).is_sound());
+  EXPECT_EQ(StoreFile::open(raster)->floor()->facts().source, SourceNumber::kInt16);
+}
+
 TEST(Format, ReadsTheGoldenFile) {
   ASSERT_TRUE(verify_store(golden()).is_sound());
   const StoreContent content = two_records();
@@ -132,8 +147,9 @@ TEST(Format, ReadsTheGoldenFile) {
     for (const SectionInfo& s : store->sections()) {
       names.push_back(s.name);
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "metadata", "t0 vertices",
-                                               "t0 triangles", "error table", "index", "pages"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"header", "section table", "segments", "metadata",
+                                               "t0 vertices", "t0 triangles", "error table",
+                                               "index", "pages"}));
   }
 }
 

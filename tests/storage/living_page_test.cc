@@ -87,7 +87,8 @@ std::vector<Made> made_of(const LivingStars& living) {
 LivingStars living_of(const PackedPage& page, const HeightEncoding& heights,
                       const LivingFilter& filter) {
   LivingStars living;
-  take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes), filter, living);
+  take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, {}, page.bytes, nullptr),
+              filter, living);
   return living;
 }
 
@@ -177,7 +178,8 @@ void expect_possible(const PackedPage& page, const HeightEncoding& heights, doub
   filter.level = level;
   LivingStars living;
   const auto code = code_of([&] {
-    take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes), filter, living);
+    take_living(RecordPage(kPageName, PageId{0}, page.entry, heights, {}, page.bytes, nullptr),
+                filter, living);
   });
   if (code) {
     ASSERT_EQ(code, ErrorCode::corruption);

@@ -14,6 +14,7 @@
 #include "engine/error.h"
 #include "storage/index_shape.h"
 #include "storage/page_slots.h"
+#include "storage/sample_heights.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/storage/store_fixture.h"
 #include "tests/support/share_of_cases.h"
@@ -58,6 +59,7 @@ std::vector<PageId> brute_force(const StoreFile& store, const AttributePredicate
 std::vector<PageId> search(const RecordIndex& index, const AttributePredicate& predicate) {
   std::vector<PageId> pages;
   IoCounters counters;
+  SampleHeights samples;
   index.search(predicate, pages, counters);
   return pages;
 }
@@ -101,8 +103,9 @@ RC_GTEST_PROP(PackedRTree, MissesNoRecord, ()) {
   const FunctionPredicate predicate = any_predicate(*s.mapped);
   std::vector<VertexSplit> found;
   IoCounters counters;
+  SampleHeights samples;
   for (const PageId id : search(s.mapped->index(), predicate)) {
-    s.mapped->read_matching(id, predicate, found, counters);
+    s.mapped->read_matching(id, predicate, found, samples, counters);
   }
   std::size_t expected = 0;
   for (const VertexSplit& r : read_all(*s.mapped)) {
@@ -117,12 +120,13 @@ TEST(PackedRTree, CountsWhatItReads) {
   const FunctionPredicate none([](const Attributes&) { return false; });
   std::vector<PageId> pages;
   IoCounters counters;
+  SampleHeights samples;
   s.mapped->index().search(none, pages, counters);
   EXPECT_EQ(counters.index_nodes, 1U);
   EXPECT_TRUE(pages.empty());
   counters = {};
   s.mapped->index().search(all, pages, counters);
-  EXPECT_EQ(counters.index_nodes, IndexShape(s.mapped->pages().page_count()).total_nodes());
+  EXPECT_EQ(counters.index_nodes, s.mapped->index_shape().total_nodes());
   EXPECT_EQ(counters.bytes_read, counters.index_nodes * 4096);
   EXPECT_EQ(pages.size(), s.mapped->pages().page_count());
 }
@@ -241,6 +245,31 @@ RC_GTEST_PROP(IndexShape, EveryChildHasOneParentEntry, ()) {
     RC_ASSERT(shape.entries(level, last) >= 1U);
     RC_ASSERT(last * layout::kFanOut + shape.entries(level, last) == shape.children(level));
   }
+}
+
+RC_GTEST_PROP(IndexShape, EachPageOfSomeSegmentsHasOneEntryAndOneName, ()) {
+  const auto segments = *rc::gen::nonEmpty(
+      rc::gen::container<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(1, 300)));
+  const IndexShape shape(segments);
+  std::uint64_t page = 0;
+  std::uint64_t leaf = 0;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    for (std::uint64_t k = 0; k < segments[s]; ++k, ++page) {
+      leaf += k > 0 && k % layout::kFanOut == 0 ? 1 : 0;
+      const auto [found, entry] = shape.leaf_entry(page);
+      RC_ASSERT(found == leaf);
+      RC_ASSERT(shape.first_child(0, leaf) + entry == page);
+      RC_ASSERT(entry < shape.entries(0, leaf));
+      RC_ASSERT(shape.name_of(0, leaf) == (std::uint64_t{s} << 32 | k / layout::kFanOut));
+      RC_ASSERT(shape.page_name(page) == (s << 16 | k));
+      RC_ASSERT(shape.page_named(shape.page_name(page)) == page);
+    }
+    RC_ASSERT(shape.page_named(static_cast<std::uint32_t>(s << 16 | segments[s])) == std::nullopt);
+    ++leaf;
+  }
+  RC_ASSERT(shape.pages() == page);
+  RC_ASSERT(shape.nodes(0) == leaf);
+  RC_ASSERT(shape.page_named(static_cast<std::uint32_t>(segments.size() << 16)) == std::nullopt);
 }
 
 TEST(PageSlots, PutEachPageIntoOneSlotBeyond32Bits) {

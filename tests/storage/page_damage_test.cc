@@ -24,7 +24,7 @@ namespace {
 class DamagedPage : public testing::Test {
  protected:
   DamagedPage() : page_(packed_page(content_.segments[0], heights_)) {
-    EXPECT_TRUE(columns_.read(header(), page_.bytes.size()));
+    EXPECT_TRUE(columns_.read(page_.bytes, {}));
   }
   [[nodiscard]] layout::PageHeader header() const {
     return object_at<layout::PageHeader>(page_.bytes, 0);
@@ -34,7 +34,8 @@ class DamagedPage : public testing::Test {
   [[nodiscard]] bool is_accepted(const PackedPage& page) const {
     StarredRecords records;
     try {
-      RecordPage(kPageName, PageId{0}, page.entry, heights_, page.bytes).decode(records);
+      RecordPage(kPageName, PageId{0}, page.entry, heights_, {}, page.bytes, nullptr)
+          .decode(records);
     } catch (const Error& e) {
       EXPECT_EQ(e.code(), ErrorCode::corruption);
       EXPECT_NE(e.context().find(kPageName + ", page 0"), std::string::npos);
@@ -55,9 +56,11 @@ class DamagedPage : public testing::Test {
   /// The same, before any number is looked at.
   void expect_frame_refused(const char* name,
                             const std::function<void(layout::PageHeader&)>& change) const {
+    PackedPage page = page_;
     layout::PageHeader h = header();
     change(h);
-    EXPECT_FALSE(PageColumns().read(h, page_.bytes.size())) << name;
+    set_object(page.bytes, 0, h);
+    EXPECT_FALSE(PageColumns().read(page.bytes, {})) << name;
     expect_header_refused(name, change);
   }
   void expect_excluded(const char* name,
@@ -114,7 +117,7 @@ TEST_F(DamagedPage, RefusesHeadersThatCannotBe) {
   expect_header_refused("fewer records", [](auto& h) { h.records = 1; });
   expect_frame_refused("more than fit", [](auto& h) { h.records = 513; });
   expect_frame_refused("endless records", [](auto& h) { h.records = UINT16_MAX; });
-  for (std::size_t c = 0; c < kPageColumns; ++c) {
+  for (std::size_t c = 0; c < header().width.size(); ++c) {
     for (const unsigned width : {kMostColumnBits[c] + 1U, 58U, 64U, 255U}) {
       expect_frame_refused("width", [=](auto& h) { h.width[c] = std::uint8_t(width); });
     }
@@ -127,7 +130,18 @@ TEST_F(DamagedPage, RefusesHeadersThatCannotBe) {
   expect_frame_refused("rings beyond the page", [](auto& h) { h.ring_bytes = UINT16_MAX; });
   expect_header_refused("no rings", [](auto& h) { h.ring_bytes = 0; });
   expect_header_refused("fewer rings", [](auto& h) { h.ring_bytes -= 1; });
-  expect_frame_refused("reserved", [](auto& h) { h.reserved[1] = 1; });
+  expect_frame_refused("another flag", [](auto& h) { h.flags = 2; });
+  expect_frame_refused("local without heights of a raster",
+                       [](auto& h) { h.flags = layout::kLocalPage; });
+  for (const unsigned shift : {32U, 255U}) {
+    expect_frame_refused("shift", [=](auto& h) { h.shift = std::uint8_t(shift); });
+  }
+  for (const unsigned width : {6U, 64U, 255U}) {
+    expect_frame_refused("width of shifts", [=](auto& h) { h.shift_width = std::uint8_t(width); });
+  }
+  for (const PageColumn c : {PageColumn::kBelow, PageColumn::kAbove}) {
+    expect_frame_refused("units", [=](auto& h) { h.width[static_cast<std::size_t>(c)] = 5; });
+  }
 }
 
 TEST_F(DamagedPage, RefusesNumbersThatCannotBe) {
@@ -140,7 +154,8 @@ TEST_F(DamagedPage, RefusesNumbersThatCannotBe) {
   expect_header_refused("roi north of the grid", [](auto& h) { h.y = kGridMax - 4; });
   expect_header_refused("height", [](auto& h) { h.height = UINT32_MAX - 3; });
   expect_header_refused("interval of heights", [](auto& h) { h.height = 0; });
-  expect_header_refused("error", [](auto& h) { h.error = kShortInfinity; });
+  expect_header_refused("an error below 0", [](auto& h) { h.error = 0; });
+  expect_header_refused("error", [](auto& h) { h.error = kShortInfinity + 1; });
   expect_header_refused("error", [](auto& h) { h.error = UINT16_MAX; });
   expect_header_refused("deviation", [](auto& h) { h.deviation = UINT16_MAX; });
   expect_header_refused("rank", [](auto& h) { h.rank = UINT16_MAX; });
@@ -175,12 +190,12 @@ TEST_F(DamagedPage, RefusesFlagsThatCannotBe) {
   ASSERT_TRUE(h.width[flags] == 0 && h.width[rank] == 1);
   h.width[rank] = 0;
   h.width[flags] = 4;
-  ASSERT_TRUE(columns_.read(h, page.bytes.size()));
   std::size_t at = sizeof h;
   for (std::size_t c = 0; c < flags; ++c) {
     at += (2U * h.width[c] + 7) / 8;
   }
   set_object(page.bytes, 0, h);
+  ASSERT_TRUE(columns_.read(page.bytes, {}));
   for (const unsigned both : {0U, 1U, 2U, 3U, 4U, 8U, 12U}) {
     page.bytes[at] = static_cast<std::byte>(both);
     // With one of the first two the star is open, and goes around more than half of u.
@@ -221,7 +236,7 @@ TEST_F(DamagedPage, RefusesDeathsThatCannotBe) {
   const float least = short_value(1);
   records.corners[2].death = least;
   page_ = packed_page(records, heights_);
-  ASSERT_TRUE(columns_.read(header(), page_.bytes.size()));
+  ASSERT_TRUE(columns_.read(page_.bytes, {}));
   const unsigned width = death_bits_of_ring();
   const std::size_t at = corner_at(2) + 2 * offset_bits() + height_bits();
   const std::uint32_t death = stored_death(least, short_bits(records.splits[0].error));
@@ -239,7 +254,7 @@ TEST_F(DamagedPage, RefusesSurfaceWithoutHeightsAndMoreVoidThanTriangles) {
   records.ring(0)[2].height = 0;
   name_by_ring(records.splits[0], records.ring(0));
   page_ = packed_page(records, heights_);
-  ASSERT_TRUE(columns_.read(header(), page_.bytes.size()) && is_accepted(page_));
+  ASSERT_TRUE(columns_.read(page_.bytes, {}) && is_accepted(page_));
   const auto flags_at = [&](std::size_t k) { return corner_at(k + 1) - 2; };
   expect_bits_refused("surface after it", flags_at(2), 1, 0);
   expect_bits_refused("surface before it", flags_at(1), 1, 0);
@@ -308,7 +323,7 @@ TEST(RecordPage, RefusesHeightsThatAreNoNumbers) {
   r.height = layout::to_bits(std::numeric_limits<float>::infinity());
   add_star(records, r, {{4, 4}, {6, 5}, {5, 6}}, heights);
   PackedPage page = packed_page(records, heights);
-  EXPECT_TRUE(are_same(decoded_page(page, heights), records));
+  EXPECT_TRUE(are_same(decoded_page(page, heights), as_on_page(records, heights.type)));
   auto h = object_at<layout::PageHeader>(page.bytes, 0);
   h.height += 1;
   set_object(page.bytes, 0, h);

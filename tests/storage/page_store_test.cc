@@ -17,6 +17,7 @@
 #include "storage/file/sigbus_guard.h"
 #include "storage/index_shape.h"
 #include "storage/layout.h"
+#include "storage/sample_heights.h"
 #include "tests/storage/failing_files.h"
 
 namespace ptin::test {
@@ -57,6 +58,7 @@ TEST_P(PageStoreTest, ReadsPagesAndCountsThem) {
   const auto store = open();
   std::vector<std::byte> page(store->pages().page_bytes());
   IoCounters counters;
+  SampleHeights samples;
   store->pages().read(PageId{5}, page, counters);
   store->pages().read(PageId{5}, page, counters);
   EXPECT_EQ(counters.pages, 2U);
@@ -69,12 +71,13 @@ TEST_P(PageStoreTest, RefusesPagesThatAreNotThere) {
   std::vector<std::byte> page(4096);
   std::vector<VertexSplit> records;
   IoCounters counters;
+  SampleHeights samples;
   for (const std::uint64_t id : {store->pages().page_count(), std::uint64_t{1} << 32, UINT64_MAX}) {
     EXPECT_EQ(code_of([&] { store->pages().read(PageId{id}, page, counters); }),
               ErrorCode::corruption);
     EXPECT_EQ(code_of([&] { static_cast<void>(store->page_info(PageId{id})); }),
               ErrorCode::corruption);
-    EXPECT_EQ(code_of([&] { store->read_records(PageId{id}, records, counters); }),
+    EXPECT_EQ(code_of([&] { store->read_records(PageId{id}, records, samples, counters); }),
               ErrorCode::corruption);
     const std::vector<PageId> ids{PageId{id}};
     store->pages().announce(ids, counters);
@@ -101,6 +104,7 @@ TEST_P(PageStoreTest, NamesANodeThatDoesNotMatchItsChecksum) {
   const auto store = open();
   std::vector<PageId> ids;
   IoCounters counters;
+  SampleHeights samples;
   const FunctionPredicate all([](const Attributes&) { return true; });
   try {
     store->index().search(all, ids, counters);
@@ -120,6 +124,7 @@ TEST_P(PageStoreTest, AnnouncesTheNodesOfALevelBeforeTheyAreReadForTheFirstTime)
   for (const std::uint64_t expected : {1U, 0U}) {  // the leaves, one beside the other
     std::vector<PageId> ids;
     IoCounters counters;
+    SampleHeights samples;
     store->index().search(all, ids, counters);
     EXPECT_EQ(counters.index_nodes, IndexShape(ids.size()).total_nodes());
     EXPECT_EQ(counters.ranges_announced, expected);
@@ -136,6 +141,7 @@ TEST_P(PageStoreTest, AnnouncesNearPagesAsOneRange) {
       ids.push_back(PageId{n});
     }
     IoCounters counters;
+    SampleHeights samples;
     store->pages().announce(ids, counters);
     return counters.ranges_announced;
   };
@@ -166,6 +172,7 @@ TEST_P(PageStoreTest, TellsAnAnnouncerWhatIsReadNext) {
   const FunctionPredicate all([](const Attributes&) { return true; });
   std::vector<PageId> ids;
   IoCounters counters;
+  SampleHeights samples;
   store->index().search(all, ids, counters);
   const std::uint64_t leaves = IndexShape(ids.size()).nodes(0);
   const std::uint64_t index = section(layout::SectionKind::kIndex);
@@ -213,6 +220,7 @@ TEST_P(PageStoreTest, SurvivesAFileThatIsCutShort) {
   // Not only because zeros are no records: a page that was verified before is not served either.
   std::vector<std::byte> page(4096);
   IoCounters counters;
+  SampleHeights samples;
   EXPECT_EQ(code_of([&] { store->pages().read(PageId{70}, page, counters); }),
             ErrorCode::corruption);
   EXPECT_EQ(read_everything(*untouched), std::nullopt)
@@ -225,6 +233,7 @@ TEST_P(PageStoreTest, SurvivesAFileThatIsCutShortInsideOfTheIndex) {
   const FunctionPredicate all([](const Attributes&) { return true; });
   std::vector<PageId> ids;
   IoCounters counters;
+  SampleHeights samples;
   store->index().search(all, ids, counters);
   fs::resize_file(path_, section(layout::SectionKind::kIndex));
   const auto code = code_of([&] {

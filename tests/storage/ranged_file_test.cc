@@ -99,6 +99,22 @@ TEST_F(RangedFileTest, ForgetsAnnouncementsAtTheNextAndAtTheEndOfAQuestion) {
             (std::vector<NotingSource::Round>{{{70 * kBlock, kBlock}}, {{100 * kBlock, kBlock}}}));
 }
 
+TEST_F(RangedFileTest, TakesWhatIsAlsoNeededAlongWhateverIsReadNext) {
+  open();
+  const ByteRange beside{30 * kBlock, 2 * kBlock};
+  file->will_also_need({&beside, 1});
+  announce({{10 * kBlock, kBlock}, {50 * kBlock, kBlock}});
+  expect_reads(50 * kBlock, 1);
+  expect_reads(31 * kBlock, 1);
+  EXPECT_EQ(source->rounds,
+            (std::vector<NotingSource::Round>{{{30 * kBlock, 2 * kBlock}, {50 * kBlock, kBlock}}}));
+  // Of a question that ended nothing is left.
+  file->will_also_need({&beside, 1});
+  file->check_unchanged();
+  expect_reads(100 * kBlock, 1);
+  EXPECT_EQ(source->rounds.back(), (NotingSource::Round{{100 * kBlock, kBlock}}));
+}
+
 TEST_F(RangedFileTest, SplitsLongAnnouncementsIntoRoundsThatTheCacheHolds) {
   open(0, {.memory_bytes = RangedFile::kLeastCacheBytes, .folder = {}});
   announce({{0, 300 * kBlock}});

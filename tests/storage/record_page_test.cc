@@ -25,22 +25,6 @@ namespace {
 
 constexpr float kMostError = std::numeric_limits<float>::infinity();
 
-/// As a page gives them back: 0 in the place of -0.
-StarredRecords without_minus_zeros(StarredRecords records, HeightType type) {
-  const auto normalize = [&](HeightBits& h) {
-    h = type == HeightType::float32 && h == 0x80000000 ? 0 : h;
-  };
-  for (VertexSplit& r : records.splits) {
-    normalize(r.height);
-    normalize(r.height_lo);
-    normalize(r.height_hi);
-  }
-  for (RingCorner& c : records.corners) {
-    normalize(c.height);
-  }
-  return records;
-}
-
 StarredRecords first(const StarredRecords& records, std::size_t count) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -61,10 +45,37 @@ RC_GTEST_PROP(RecordPage, GivesBackWhatWasPackedAndPacksItSoAgain, ()) {
   const PackedPage page = packed_page(records, strange.heights(), page_bytes);
   RC_ASSERT(page.records >= 1U);
   const StarredRecords back = decoded_page(page, strange.heights());
-  RC_ASSERT(are_same(back, without_minus_zeros(first(records, page.records), type)));
+  RC_ASSERT(are_same(back, as_on_page(first(records, page.records), type)));
   const PackedPage again = packed_page(back, strange.heights(), page_bytes);
   RC_ASSERT(again.bytes == page.bytes);
   RC_ASSERT(std::memcmp(&again.entry, &page.entry, sizeof page.entry) == 0);
+}
+
+/// FORMAT.md, "Intervals", without the packer's arithmetic: ends at multiples of a power of two, at most 16
+/// of these units, the least such power; an interval that holds another still does; twice changes nothing.
+RC_GTEST_PROP(RecordPage, KeepsIntervalsRoundedOutward, ()) {
+  const auto any = [](std::uint64_t low, std::uint64_t high) {
+    return low + *rc::gen::arbitrary<std::uint64_t>() % (high - low + 1);
+  };
+  const std::uint64_t reach = std::uint64_t{1} << *rc::gen::inRange(0, 33);
+  const std::uint64_t low = any(0, UINT32_MAX);
+  const std::uint64_t high = std::min<std::uint64_t>(UINT32_MAX, low + any(0, reach - 1));
+  const std::uint64_t own = any(low, high);
+  const auto kept_of = [](std::uint64_t height, std::uint64_t lo, std::uint64_t hi) {
+    const KeptInterval kept = kept_interval({height, lo, hi});
+    return interval_of(height, kept.shift, kept.below, kept.above, HeightType::int32);
+  };
+  const OrderedInterval kept = kept_of(own, low, high);
+  RC_ASSERT(kept.height == own && kept.low <= low && high <= kept.high && kept.high <= UINT32_MAX);
+  std::uint64_t unit = 1;
+  while (high / unit - low / unit + 1 > 16) unit *= 2;
+  RC_ASSERT(kept.low == low / unit * unit && kept.high == high / unit * unit + unit - 1);
+  const OrderedInterval again = kept_of(own, kept.low, kept.high);
+  RC_ASSERT(again.low == kept.low && again.high == kept.high);
+  const std::uint64_t inner_low = any(low, high);
+  const std::uint64_t inner_high = any(inner_low, high);
+  const OrderedInterval inner = kept_of(inner_low, inner_low, inner_high);
+  RC_ASSERT(kept.low <= inner.low && inner.high <= kept.high);
 }
 
 std::span<const RingCorner> triangles_of(const VertexSplit& r,
@@ -112,7 +123,8 @@ RC_GTEST_PROP(RecordPage, GivesEachRecordAndRingByItself, ()) {
   }
   const PackedPage bytes = packed_page(records, strange.heights(), 65536);
   const StarredRecords expected = decoded_page(bytes, strange.heights());
-  const RecordPage page(kPageName, PageId{0}, bytes.entry, strange.heights(), bytes.bytes);
+  const RecordPage page(kPageName, PageId{0}, bytes.entry, strange.heights(), {}, bytes.bytes,
+                        nullptr);
   RunRings rings;
   for (int asked = 0; asked < 40; ++asked) {
     const auto i = *rc::gen::inRange<std::size_t>(0, page.records());
@@ -166,7 +178,7 @@ TEST(RecordPage, HoldsTheWidestRecordOnTheSmallestPage) {
   EXPECT_EQ(header.height_bits, 33);
   EXPECT_EQ(header.death_bits, 15);
   EXPECT_EQ(header.void_bits + header.no_height_bits, 2);
-  EXPECT_TRUE(are_same(decoded_page(page, heights), records));
+  EXPECT_TRUE(are_same(decoded_page(page, heights), as_on_page(records, heights.type)));
 }
 
 TEST(RecordPage, HoldsRecordsAtBothEndsOfTheGrid) {
@@ -180,7 +192,8 @@ TEST(RecordPage, HoldsRecordsAtBothEndsOfTheGrid) {
     add_star(records, r, {{x, 5 - inward}, {x + inward, 5}, {x, 5 + inward}}, heights);
     records.splits.back().roi = {0, 0, kGridMax, kGridMax};
   }
-  EXPECT_TRUE(are_same(decoded_page(packed_page(records, heights), heights), records));
+  EXPECT_TRUE(are_same(decoded_page(packed_page(records, heights), heights),
+                       as_on_page(records, heights.type)));
 }
 
 TEST(RecordPage, DescribesMinusZeroAsZero) {
@@ -263,7 +276,7 @@ TEST(PagePacker, RefusesRecordsThatNoReaderWouldAccept) {
     const std::span<const RingCorner> all = content.segments[0].ring(0);
     std::vector<RingCorner> ring(all.begin(), all.end());
     ruin(r, ring);
-    PagePacker packer(4096, heights);
+    PagePacker packer(4096, heights, {});
     return code_of([&] { static_cast<void>(packer.add(r, ring)); });
   };
   struct Case {

@@ -72,6 +72,24 @@ inline layout::SectionEntry section_of(const Bytes& file, layout::SectionKind ki
   return {};
 }
 
+// The shape of a file's index; none of a file whose segments are not sound.
+inline IndexShape shape_of(const Bytes& file, const layout::FileHeader& h) {
+  if (h.major_version == 2) return IndexShape(h.page_count);
+  const auto section = section_of(file, layout::SectionKind::kSegments);
+  std::vector<std::uint64_t> segments;
+  std::uint64_t left = h.page_count;
+  for (std::uint64_t i = 0; i < section.bytes / sizeof(layout::SegmentEntry); ++i) {
+    const std::uint64_t offset = section.offset + i * sizeof(layout::SegmentEntry);
+    if (!holds(file, offset, sizeof(layout::SegmentEntry))) return {};
+    const auto entry = object_at<layout::SegmentEntry>(file, offset);
+    const std::uint64_t pages = std::uint64_t{entry.last} + 1;
+    if (pages > left) return {};
+    left -= pages;
+    segments.push_back(pages);
+  }
+  return left == 0 ? IndexShape(segments) : IndexShape();
+}
+
 // Pages into leaves, leaves into the level above, and so on. Returns the checksum of the root.
 inline std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
   const auto index = section_of(file, layout::SectionKind::kIndex);
@@ -79,8 +97,9 @@ inline std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
   if (h.page_count == 0 || h.page_bytes == 0 || h.page_count > file.size() / h.page_bytes) {
     return index.checksum;
   }
-  const IndexShape shape(h.page_count);
-  if (!holds(file, index.offset, shape.total_bytes()) || h.first_page >= h.page_count) {
+  const IndexShape shape = shape_of(file, h);
+  if (shape.levels() == 0 || !holds(file, index.offset, shape.total_bytes()) ||
+      h.first_page >= h.page_count) {
     return index.checksum;
   }
   const PageSlots slots{h.page_count, h.first_page, pages.offset, h.page_bytes};
@@ -96,10 +115,13 @@ inline std::uint64_t seal_index(Bytes& file, const layout::FileHeader& h) {
         return index.checksum;
       }
       const std::uint64_t sum = checksum_of(std::span(file).subspan(offset, bytes));
-      const std::uint64_t place = node_offset(level, child / layout::kFanOut) +
-                                  offsetof(layout::IndexNode, entry) +
-                                  child % layout::kFanOut * sizeof(layout::NodeEntry) +
-                                  offsetof(layout::NodeEntry, checksum);
+      const IndexShape::LeafEntry parent =
+          level == 0 ? shape.leaf_entry(child)
+                     : IndexShape::LeafEntry{child / layout::kFanOut,
+                                             static_cast<std::uint32_t>(child % layout::kFanOut)};
+      const std::uint64_t place =
+          node_offset(level, parent.leaf) + offsetof(layout::IndexNode, entry) +
+          parent.entry * sizeof(layout::NodeEntry) + offsetof(layout::NodeEntry, checksum);
       set_object(file, place, sum);
     }
   }
@@ -164,18 +186,19 @@ inline void seal(Bytes& file) {
   set_header(file, h);
 }
 
-/// The file with a seventh section of a later minor version, `bytes` long, behind the pages: header
+/// The file with one section more, of a later minor version, `bytes` long, behind the pages: header
 /// and table speak of it, its bytes are for the caller to append. To be sealed.
 inline Bytes with_room_for_a_section(const Bytes& file, std::uint64_t bytes) {
-  // The table has no room for a seventh line: the sections before the index move by one, into the
+  // The table has no room for another line: the sections before the index move by one, into the
   // gap before it.
   std::vector<layout::SectionEntry> sections = sections_of(file);
-  const std::uint64_t index = sections.at(4).offset;
-  std::uint64_t at = sizeof(layout::FileHeader) + 7 * sizeof(layout::SectionEntry);
+  const std::uint64_t index = section_of(file, layout::SectionKind::kIndex).offset;
+  std::uint64_t at =
+      sizeof(layout::FileHeader) + (sections.size() + 1) * sizeof(layout::SectionEntry);
   Bytes result = file;
   std::fill(result.begin() + sizeof(layout::FileHeader),
             result.begin() + static_cast<std::ptrdiff_t>(index), std::byte{0});
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; sections[i].offset < index; ++i) {
     if (at + sections[i].bytes > index) {
       throw std::runtime_error("there is no gap of 32 bytes before the index");
     }
@@ -186,8 +209,8 @@ inline Bytes with_room_for_a_section(const Bytes& file, std::uint64_t bytes) {
   }
   sections.push_back({99, 1, result.size(), bytes, 0});
   layout::FileHeader header = header_of(file);
-  header.minor_version = layout::kMinorVersion + 1;
-  header.section_count = 7;
+  header.minor_version = layout::newest_minor(header.major_version) + 1;
+  header.section_count = static_cast<std::uint32_t>(sections.size());
   header.file_bytes = result.size() + bytes;
   set_header(result, header);
   set_sections(result, sections);

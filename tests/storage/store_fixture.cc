@@ -13,7 +13,9 @@
 #include <span>
 #include <tuple>
 
+#include "storage/sample_heights.h"
 #include "storage/short_float.h"
+#include "tests/support/kept_interval.h"
 
 namespace ptin::test {
 
@@ -32,14 +34,16 @@ void write_file(const std::string& path, const Bytes& bytes) {
             static_cast<std::streamsize>(bytes.size()));
 }
 
+void append(StarredRecords& to, const StarredRecords& records) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const std::span<const RingCorner> ring = records.ring(i);
+    add_star(to, records.splits[i], {ring.begin(), ring.end()});
+  }
+}
+
 StarredRecords StoreContent::all_records() const {
   StarredRecords all;
-  for (const StarredRecords& s : segments) {
-    for (std::size_t i = 0; i < s.size(); ++i) {
-      const std::span<const RingCorner> ring = s.ring(i);
-      add_star(all, s.splits[i], {ring.begin(), ring.end()});
-    }
-  }
+  for (const StarredRecords& s : segments) append(all, s);
   return all;
 }
 
@@ -167,8 +171,9 @@ StoreContent random_content(const RandomRecords& options) {
 void write_store(const std::string& path, const StoreContent& content,
                  const StoreWriterOptions& options) {
   const auto writer = StoreWriter::create(path, options);
+  const PageForm form{.has_floor = static_cast<bool>(content.add_floor)};
   for (const StarredRecords& segment : content.segments) {
-    writer->add_segment(pack_segment(segment, content.facts.heights, options.page_bytes),
+    writer->add_segment(pack_segment(segment, content.facts.heights, form, options.page_bytes),
                         content.facts.heights);
   }
   if (content.add_floor) content.add_floor(*writer);
@@ -178,8 +183,9 @@ void write_store(const std::string& path, const StoreContent& content,
 std::vector<VertexSplit> read_all(const StoreFile& store) {
   std::vector<VertexSplit> all;
   IoCounters counters;
+  SampleHeights samples;
   for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
-    store.read_records(PageId{i}, all, counters);
+    store.read_records(PageId{i}, all, samples, counters);
   }
   return all;
 }
@@ -187,8 +193,9 @@ std::vector<VertexSplit> read_all(const StoreFile& store) {
 StarredRecords read_all_starred(const StoreFile& store) {
   StarredRecords all;
   IoCounters counters;
+  SampleHeights samples;
   for (std::uint64_t i = 0; i < store.pages().page_count(); ++i) {
-    store.read_starred(PageId{i}, all, counters);
+    store.read_starred(PageId{i}, all, samples, counters);
   }
   return all;
 }
@@ -206,6 +213,28 @@ StarredRecords in_order(const StarredRecords& records, std::span<const std::uint
     add_star(result, records.splits[i], std::vector<RingCorner>(ring.begin(), ring.end()));
   }
   return result;
+}
+
+StarredRecords as_kept(StarredRecords records, HeightType type) {
+  const auto normalized = [&](HeightBits h) {
+    return height_of_ordered(ordered_height(h, type), type);
+  };
+  for (VertexSplit& r : records.splits) {
+    if (r.has_height()) r.height = normalized(r.height);
+    keep_interval(r, type);
+  }
+  for (RingCorner& c : records.corners) {
+    c.height = c.has_height() ? normalized(c.height) : c.height;
+  }
+  return records;
+}
+
+StarredRecords as_on_page(const StarredRecords& records, HeightType type) {
+  std::vector<std::uint32_t> order(records.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](std::uint32_t i) { return records.splits[i].error; });
+  return as_kept(in_order(records, order), type);
 }
 
 StarredRecords sorted_by_key(const StarredRecords& records) {

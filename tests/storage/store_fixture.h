@@ -60,9 +60,17 @@ void write_store(const std::string& path, const StoreContent& content,
 [[nodiscard]] std::vector<VertexSplit> read_all(const StoreFile& store);
 [[nodiscard]] StarredRecords read_all_starred(const StoreFile& store);
 
+/// Records as pages give them back: 0 in the place of -0, and the interval of heights wider where it spans
+/// more than pages tell (tests/support/kept_interval.h).
+[[nodiscard]] StarredRecords as_kept(StarredRecords records, HeightType type);
+/// The same, in the order of one page: errors descend, and those of one error stay as they are.
+[[nodiscard]] StarredRecords as_on_page(const StarredRecords& records, HeightType type);
+
 /// The records `order[0]`, `order[1]`, ... with their stars.
 [[nodiscard]] StarredRecords in_order(const StarredRecords& records,
                                       std::span<const std::uint32_t> order);
+/// Appends records with their stars.
+void append(StarredRecords& to, const StarredRecords& records);
 /// By rank, error and key, so that two lists can be compared.
 [[nodiscard]] StarredRecords sorted_by_key(const StarredRecords& records);
 [[nodiscard]] bool are_same(const StarredRecords& a, const StarredRecords& b);

@@ -166,7 +166,7 @@ TEST_F(StoreOpen, OfAStoreWhoseFirstBytesAreDamagedSaysSo) {
 TEST_F(StoreOpen, RefusesANewerMajorVersionWhateverTheRestIs) {
   Bytes bytes = bytes_;
   FileHeader header = header_of(bytes);
-  header.major_version = 3;
+  header.major_version = layout::kMajorVersion + 1;
   header.header_bytes = 512;
   header.header_checksum = 99;
   set_header(bytes, header);
@@ -377,12 +377,20 @@ TEST_F(StoreOpen, RejectsMapsThatLeadToNoPlaceOfTheTerrain) {
   EXPECT_EQ(code_of(bytes), std::nullopt);
 }
 
+TEST_F(StoreOpen, RejectsSegmentsThatNoProgramWrote) {
+  using Segment = layout::SegmentEntry;
+  for (const int last : {0, 999, UINT16_MAX}) {
+    expect_entry_rejected<Segment>("last", SectionKind::kSegments, 0,
+                                   [=](Segment& s) { s.last = static_cast<std::uint16_t>(last); });
+  }
+}
+
 TEST_F(StoreOpen, RejectsDirectoriesThatNoProgramPlaced) {
   write_store(path_, random_content({.seed = 7, .segments = 2, .records = 70}),
               {.overwrite = true, .directory = {.least_pages = 1}});
   bytes_ = read_file(path_);
   using Table = std::vector<SectionEntry>;
-  constexpr std::size_t kRoot = 4, kNodes = 6;
+  constexpr std::size_t kRoot = 5, kNodes = 7;
   ASSERT_EQ(sections_of(bytes_)[kRoot].kind, static_cast<std::uint32_t>(SectionKind::kDirectory));
   ASSERT_EQ(sections_of(bytes_)[kNodes].kind,
             static_cast<std::uint32_t>(SectionKind::kDirectoryNodes));
@@ -406,10 +414,10 @@ TEST_F(StoreOpen, RejectsDirectoriesThatNoProgramPlaced) {
 
 TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {
   using Table = std::vector<SectionEntry>;
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < 7; ++i) {
     expect_sections_rejected("reserved", [=](Table& t) { t[i].reserved = 1; });
     expect_sections_rejected("missing", [=](Table& t) { t[i].kind = 77; });
-    expect_sections_rejected("twice", [=](Table& t) { t[i].kind = t[(i + 1) % 6].kind; });
+    expect_sections_rejected("twice", [=](Table& t) { t[i].kind = t[(i + 1) % t.size()].kind; });
     for (const std::uint64_t offset :
          {std::uint64_t{0}, std::uint64_t{8}, UINT64_MAX, UINT64_MAX - 7}) {
       expect_sections_rejected("offset", [=](Table& t) { t[i].offset = offset; });
@@ -417,13 +425,13 @@ TEST_F(StoreOpen, RejectsSectionTablesThatNoProgramWrote) {
     expect_sections_rejected("unaligned", [=](Table& t) { t[i].offset += 1; });
     expect_sections_rejected("too far", [=](Table& t) { t[i].offset += 1 << 30; });
     expect_sections_rejected("endless", [=](Table& t) { t[i].bytes = UINT64_MAX; });
-    if (i > 0) {
+    if (i != 1) {  // metadata has any
       expect_sections_rejected("odd length", [=](Table& t) { t[i].bytes -= 1; });
     }
   }
   expect_sections_rejected("order", [](Table& t) { std::swap(t[0], t[1]); });
-  expect_sections_rejected("index unaligned", [](Table& t) { t[4].offset -= 8; });
-  expect_sections_rejected("page checksum", [](Table& t) { t[5].checksum = 1; });
+  expect_sections_rejected("index unaligned", [](Table& t) { t[5].offset -= 8; });
+  expect_sections_rejected("page checksum", [](Table& t) { t[6].checksum = 1; });
   Bytes ends_early = bytes_;
   ends_early.resize(ends_early.size() + 8);
   FileHeader header = header_of(ends_early);

@@ -48,21 +48,22 @@ TEST(StoreWriter, PutsRecordsInTheOrderOfTheirSegmentAndStartsEachOnAPageOfItsOw
   const StoreContent content = random_content({.segments = 3, .records = 1000});
   write_store(folder.file("a"), content);
   const auto store = StoreFile::open(folder.file("a"));
-  StarredRecords expected;
+  StarredRecords ordered;
   for (const StarredRecords& segment : content.segments) {
-    const StarredRecords ordered = in_order(segment, order_of_segment(segment));
-    for (std::size_t i = 0; i < ordered.size(); ++i) {
-      const std::span<const RingCorner> ring = ordered.ring(i);
-      add_star(expected, ordered.splits[i], {ring.begin(), ring.end()});
-    }
+    append(ordered, in_order(segment, order_of_segment(segment)));
   }
-  EXPECT_TRUE(are_same(read_all_starred(*store), expected));
+  // Within a page errors descend.
+  StarredRecords expected;
   std::size_t begin = 0;
   std::set<std::size_t> begins;
   for (std::uint64_t page = 0; page < store->pages().page_count(); ++page) {
     begins.insert(begin);
-    begin += store->page_info(PageId{page}).records;
+    std::vector<std::uint32_t> of_page(store->page_info(PageId{page}).records);
+    std::iota(of_page.begin(), of_page.end(), static_cast<std::uint32_t>(begin));
+    append(expected, as_on_page(in_order(ordered, of_page), content.facts.heights.type));
+    begin += of_page.size();
   }
+  EXPECT_TRUE(are_same(read_all_starred(*store), expected));
   EXPECT_TRUE(begins.contains(1000) && begins.contains(2000));
 }
 
@@ -163,10 +164,12 @@ TEST(StoreWriter, FillsPagesOfEachSizeWithAsManyRecordsAsFit) {
       EXPECT_TRUE(verify_store(folder.file("a")).is_sound());
       const auto store = StoreFile::open(folder.file("a"));
       EXPECT_EQ(store->facts().page_bytes, page_bytes);
-      const StarredRecords all = read_all_starred(*store);
+      // As they come to the packer: a page has them in another order.
+      const StarredRecords& segment = content.segments[0];
+      const StarredRecords all = in_order(segment, order_of_segment(segment));
       std::size_t i = 0;
       for (std::uint64_t page = 0; page < store->pages().page_count(); ++page) {
-        PagePacker packer(page_bytes, heights);
+        PagePacker packer(page_bytes, heights, {});
         const std::size_t end = i + store->page_info(PageId{page}).records;
         for (; i < end; ++i) {
           ASSERT_TRUE(packer.add(all.splits[i], all.ring(i)));
@@ -242,7 +245,7 @@ TEST(StoreWriter, LeavesNothingWhenItIsNotPublished) {
   {
     StoreContent content = random_content({});
     const auto writer = StoreWriter::create(folder.file("a.ptin"), {});
-    writer->add_segment(pack_segment(content.segments[0], content.facts.heights, 4096),
+    writer->add_segment(pack_segment(content.segments[0], content.facts.heights, {}, 4096),
                         content.facts.heights);
     EXPECT_EQ(folder.names().size(), 1U);
   }
@@ -265,7 +268,7 @@ TEST(StoreWriter, RefusesFactsAndPageSizesThatAReaderWouldRefuse) {
   EXPECT_EQ(code_of([&] { write_store(folder.file("a"), content); }), ErrorCode::invalid_argument);
   content = random_content({.segments = 1, .records = 1});
   const auto writer = StoreWriter::create(folder.file("a"), {});
-  const PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, 4096);
+  const PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, {}, 4096);
   writer->add_segment(packed, content.facts.heights);
   EXPECT_EQ(code_of([&] {
               writer->add_segment(packed, {HeightType::int32, 1.0, 0.0});
@@ -277,7 +280,7 @@ TEST(StoreWriter, TakesPagesThatCannotBeReadBackForAFaultOfTheProgram) {
   const TestFolder folder;
   const StoreContent content = random_content({.segments = 1, .records = 1});
   const auto code_after = [&](const std::function<void(PackedSegment&)>& ruin) {
-    PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, 4096);
+    PackedSegment packed = pack_segment(content.segments[0], content.facts.heights, {}, 4096);
     ruin(packed);
     return code_of([&] {
       StoreWriter::create(folder.file("a"), {})->add_segment(packed, content.facts.heights);
@@ -307,7 +310,7 @@ class StoreWriterResume : public testing::Test {
     files.renames = false;
     const auto first = writer(files);
     for (const StarredRecords& segment : content_.segments) {
-      first->add_segment(pack_segment(segment, content_.facts.heights, 4096),
+      first->add_segment(pack_segment(segment, content_.facts.heights, {}, 4096),
                          content_.facts.heights);
     }
     first->sync();
@@ -342,6 +345,35 @@ TEST_F(StoreWriterResume, IsItselfResumedAfterAPowerCut) {
   third->resume(checkpoint, content_.facts.heights);
   publish(*third);
   EXPECT_TRUE(read_file(path_) == written_in_one_go());
+}
+
+TEST_F(StoreWriterResume, KeepsWhereSegmentsEnd) {
+  // Segments of so many pages have leaves of their own.
+  content_ = random_content({.seed = 4, .segments = 3, .records = 12'000});
+  const Bytes wanted = written_in_one_go();
+  const SectionInfo segments = StoreFile::open(folder_.file("b.ptin"))->sections().at(2);
+  ASSERT_EQ(segments.name, "segments");
+  ASSERT_EQ(segments.bytes, 3 * sizeof(layout::SegmentEntry));
+  for (const std::size_t kept : {1, 2}) {
+    StoreCheckpoint checkpoint;
+    const auto add = [&](StoreWriter& to, std::size_t from, std::size_t end) {
+      for (std::size_t i = from; i < end; ++i) {
+        to.add_segment(pack_segment(content_.segments[i], content_.facts.heights, {}, 4096),
+                       content_.facts.heights);
+      }
+      to.sync();
+      checkpoint = to.position();
+    };
+    add(*writer(FileLayer::system()), 0, kept);
+    const auto second = writer(FileLayer::system());
+    second->resume(checkpoint, content_.facts.heights);
+    add(*second, kept, 3);
+    publish(*second);
+    EXPECT_TRUE(read_file(path_) == wanted) << kept;
+    std::filesystem::remove(path_);
+    std::filesystem::remove_all(work_);
+    std::filesystem::create_directory(work_);
+  }
 }
 
 TEST_F(StoreWriterResume, RefusesCountsThatAreNotThoseOfItsPages) {

@@ -19,7 +19,7 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 PackedPage packed_page(const StarredRecords& records, const HeightEncoding& heights,
                        std::uint32_t page_bytes) {
-  PagePacker packer(page_bytes, heights);
+  PagePacker packer(page_bytes, heights, {});
   PackedPage page{};
   while (page.records < records.size() &&
          packer.add(records.splits[page.records], records.ring(page.records))) {
@@ -32,7 +32,7 @@ PackedPage packed_page(const StarredRecords& records, const HeightEncoding& heig
 
 StarredRecords decoded_page(const PackedPage& page, const HeightEncoding& heights) {
   StarredRecords records;
-  RecordPage(kPageName, PageId{0}, page.entry, heights, page.bytes).decode(records);
+  RecordPage(kPageName, PageId{0}, page.entry, heights, {}, page.bytes, nullptr).decode(records);
   return records;
 }
 

@@ -49,10 +49,10 @@ class Verify : public testing::Test {
 };
 
 std::uint64_t leaf_entry(const Bytes& file, std::uint64_t page) {
-  const IndexShape shape(header_of(file).page_count);
+  const IndexShape shape = shape_of(file, header_of(file));
+  const auto [leaf, entry] = shape.leaf_entry(page);
   return section_of(file, SectionKind::kIndex).offset +
-         shape.position(0, page / layout::kFanOut) * layout::kNodeBytes + 16 +
-         page % layout::kFanOut * sizeof(layout::NodeEntry);
+         shape.position(0, leaf) * layout::kNodeBytes + 16 + entry * sizeof(layout::NodeEntry);
 }
 
 std::uint64_t page_offset(const Bytes& file, std::uint64_t page) {
@@ -70,7 +70,7 @@ TEST_F(Verify, FindsNothingInASoundStore) {
       EXPECT_TRUE(report.is_sound()) << report.faults[0].what << " " << report.faults[0].where;
       EXPECT_EQ(report.records, 2 * records);
       EXPECT_EQ(report.pages, StoreFile::open(path_)->pages().page_count());
-      EXPECT_EQ(report.index_nodes, IndexShape(report.pages).total_nodes());
+      EXPECT_EQ(report.index_nodes, StoreFile::open(path_)->index_shape().total_nodes());
     }
   }
 }
@@ -207,7 +207,7 @@ TEST_F(Verify, FindsEachFlippedBitOfAPageThatIsNoPageOfOtherRecords) {
     if (report.is_sound()) {
       const auto store = StoreFile::open(folder_.file("b.ptin"));
       const StarredRecords records = read_all_starred(*store);
-      PagePacker packer(4096, heights);
+      PagePacker packer(4096, heights, {});
       for (std::size_t i = 0; i < records.size(); ++i) {
         ASSERT_TRUE(packer.add(records.splits[i], records.ring(i)));
       }
@@ -302,23 +302,25 @@ TEST_F(Verify, FindsHeightsOutOfTheHeader) {
 
 TEST_F(Verify, FindsIntervalsOfHeightsOutOfTheHeader) {
   const auto told = [&](double low, double high) {
-    StoreContent content = random_content({.segments = 1, .records = 100});
+    StoreContent content =
+        random_content({.segments = 1, .records = 100, .type = HeightType::int32});
     content.facts.min_height = low;
     content.facts.max_height = high;
     VertexSplit& r = content.segments[0].splits[42];
-    r.height_lo = content.facts.heights.bits(-60.0);
-    r.height_hi = content.facts.heights.bits(3500.0);
+    r.height_lo = content.facts.heights.bits(-600.0);  // -50
+    r.height_hi = content.facts.heights.bits(4600.0);  // 1250
     write(content);
     const VerifyReport report = verify_store(path_);
-    EXPECT_LE(report.faults.size(), 1U);
+    EXPECT_LE(report.faults.size(), 1U) << report.faults[0].what << report.faults[1].what;
     for (const VerifyFault& fault : report.faults) {
       EXPECT_EQ(fault.where.substr(0, 5), "page ") << fault.where;
     }
     return tells(report, "reaches out of the least and largest");
   };
-  EXPECT_FALSE(told(-60.0, 3500.0));
-  EXPECT_TRUE(told(-59.0, 3500.0));
-  EXPECT_TRUE(told(-60.0, 3499.0));
+  EXPECT_FALSE(told(-50.0, 1250.0));
+  // Pages keep such an interval in units of 512 steps of 0.25, and round it outward.
+  EXPECT_TRUE(told(-50.0 + 128.0, 1250.0));
+  EXPECT_TRUE(told(-50.0, 1250.0 - 128.0));
 }
 
 TEST_F(Verify, FindsHeightsOfTheHeaderThatNoSampleHas) {

@@ -164,7 +164,7 @@ inline StarredRecords changed_stars(const StarredRecords& sound,
 inline PackedSegment pack_unchecked(const StarredRecords& records, const HeightEncoding& heights,
                                     std::uint32_t page_bytes) {
   PackedSegment packed;
-  PagePacker page(page_bytes, heights, false);
+  PagePacker page(page_bytes, heights, {}, PagePacker::Packing::kAgain);
   ErrorTable errors;
   const auto finish = [&] {
     layout::NodeEntry descriptor;

@@ -104,7 +104,7 @@ TEST(CliBadInput, StoreOfANewerVersion) {
   const TestFolder folder;
   const std::string store = small_store(folder);
   std::string newer = read_file(store);
-  newer[8] = 3;  // major version
+  newer[8] = 4;  // major version
   write_file(folder.file("newer.ptin"), newer);
   expect_refusal(run_ptin({"info", folder.file("newer.ptin")}), 5, "version");
   expect_refusal(run_ptin({"verify", folder.file("newer.ptin"), "-q"}), 5, "version");

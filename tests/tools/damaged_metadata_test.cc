@@ -14,6 +14,7 @@
 
 #include "engine/crs/crs_facts.h"
 #include "engine/query/stream/stream_format.h"
+#include "storage/sample_heights.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
 #include "tests/tools/program.h"
@@ -53,11 +54,12 @@ class DamagedMetadata : public ::testing::Test {
     const auto from = StoreFile::open(folder_.file("t.ptin"));
     StarredRecords records;
     IoCounters counters;
+    SampleHeights samples;
     for (std::uint64_t i = 0; i < from->pages().page_count(); ++i)
-      from->read_starred(PageId{i}, records, counters);
+      from->read_starred(PageId{i}, records, samples, counters);
     const auto writer = StoreWriter::create(bad_, {});
     const HeightEncoding& heights = from->facts().heights;
-    writer->add_segment(pack_segment(records, heights, from->facts().page_bytes), heights);
+    writer->add_segment(pack_segment(records, heights, {}, from->facts().page_bytes), heights);
     writer->publish(from->facts(), from->t0(), metadata);
   }
   /// The stream with other metadata in its first frame.

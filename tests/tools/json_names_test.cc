@@ -154,7 +154,7 @@ TEST_F_IN_RELEASE(JsonNames, AreThoseOfTheLists) {
   ask({"info", store});
   ask({"info", "/vsisubfile/0," + store});  // as a file that lies elsewhere
   ask({"verify", store, "-q", "--against", file("dem.tif"), "--tolerance", "0", "5"});
-  tools::testing::write_file(file("cut.ptin"), tools::testing::read_file(store).substr(0, 50000));
+  tools::testing::write_file(file("cut.ptin"), tools::testing::read_file(store).substr(0, 30000));
   ask({"verify", file("cut.ptin"), "-q"}, 1);
   std::vector<json> questions;
   const auto question = [&](std::vector<std::string> arguments) {

@@ -381,7 +381,7 @@ std::uint64_t memory_for_small_questions(const IoRequest& request) {
 }
 
 TEST_F(Measured, WhatDoesNotFitTheMemoryIsLeftOutWithASentence) {
-  request_.tolerance = 0.0;  // by stars, whose questions take less than the second index
+  request_.tolerance = 0.0;  // by stars
   request_.memory_bytes = memory_for_small_questions(request_);
   const IoReport report = measure_io(request_);
   for (const QuestionFigures& f : report.questions) {
@@ -389,6 +389,11 @@ TEST_F(Measured, WhatDoesNotFitTheMemoryIsLeftOutWithASentence) {
         << name_of(f.kind) << ": " << f.why_left_out;
     EXPECT_EQ(f.cold.all().empty(), !is_small(f.kind)) << name_of(f.kind);
   }
+}
+
+TEST_F(Measured, ASecondIndexThatDoesNotFitTheMemoryIsLeftOutWithASentence) {
+  request_.memory_bytes = std::uint64_t{64} << 10;
+  const IoReport report = measure_io(request_);
   EXPECT_NE(report.index.why_no_second.find("--memory"), std::string::npos);
   EXPECT_EQ(report.index.searches.size(), 4U);
 }

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "storage/sample_heights.h"
 #include "storage/store_file.h"
 #include "storage/store_writer.h"
 #include "tests/support/replayed_stars.h"
@@ -63,8 +64,9 @@ void plant(const std::string& store, const std::string& planted,
   const auto from = StoreFile::open(store);
   StarredRecords sound;
   IoCounters counters;
+  SampleHeights samples;
   for (std::uint64_t i = 0; i < from->pages().page_count(); ++i)
-    from->read_starred(PageId{i}, sound, counters);
+    from->read_starred(PageId{i}, sound, samples, counters);
   std::vector<VertexSplit> records = sound.splits;
   std::map<float, float> errors;
   std::map<VertexKey, HeightBits> heights;

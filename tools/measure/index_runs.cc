@@ -81,8 +81,9 @@ class IndexRuns {
  public:
   IndexRuns(IoRun& run, double seconds, IoReport& report)
       : run_(run), report_(report.index), time_(run.request(), seconds) {
-    const std::uint64_t pages = run_.unmapped().store().pages().page_count();
-    report_.packed_bytes = IndexShape(pages).total_bytes();
+    const StoreFile& store = run_.unmapped().store();
+    const std::uint64_t pages = store.pages().page_count();
+    report_.packed_bytes = store.index_shape().total_bytes();
     make_second(pages);
     for (const QuestionKind kind : kKindsOfSearches) {
       for (const bool is_second : {false, true}) {

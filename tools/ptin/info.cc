@@ -56,7 +56,7 @@ nlohmann::json heights_json(const StoreFacts& facts) {
 }
 
 nlohmann::json tree_json(const StoreFile& store) {
-  const IndexShape shape(store.pages().page_count());
+  const IndexShape& shape = store.index_shape();
   nlohmann::json levels = nlohmann::json::array();
   for (std::uint32_t level = shape.levels(); level-- > 0;) levels.push_back(shape.nodes(level));
   return {{"page_bytes", store.pages().page_bytes()},
@@ -205,7 +205,7 @@ void print_counts(const StoreFile& store) {
         short_number(facts.base_error).c_str(), short_number(facts.base_deviation).c_str());
   }
   std::printf("rank       %u\n", unsigned{store.max_rank()});
-  const IndexShape shape(store.pages().page_count());
+  const IndexShape& shape = store.index_shape();
   std::printf(
       "tree       %s of %s under %s in %s\n", counted(store.pages().page_count(), "page").c_str(),
       human_bytes(store.pages().page_bytes()).c_str(), counted(shape.total_nodes(), "node").c_str(),

@@ -133,6 +133,10 @@ class HighestSearch final : private BestStarVisitor, private BestCellVisitor {
     return cut_off();
   }
 
+  void will_visit(std::span<const GridBox> stars) override {
+    store_.announce_heights(stars, context_.heights(), context_.cost.io);
+  }
+
   Merit visit(PageId page, const StarAttributes& /*a*/) override {
     context_.check_stop();
     if (best_.size() == request_.listed) {

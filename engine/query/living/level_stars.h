@@ -41,7 +41,7 @@ class LevelStars {
       context.cost.records_examined += p.records();
       take_living(p, filter, living_);
     };
-    store_->look_at(page, std::ref(look), context.cost.io);
+    store_->look_at(page, std::ref(look), context.heights(), context.cost.io);
     context.cost.stars_read += living_.stars.size();
     ties_.note_fans(living_);
   }

@@ -109,29 +109,36 @@ class LivingPage {
 
  private:
   void read_shapes(const PageRun& run, std::uint64_t wanted, Shapes& out) const noexcept;
-  [[nodiscard]] std::uint64_t find_living(PageRun& run, std::uint64_t wanted,
-                                          Shapes& shapes) const noexcept;
+  [[nodiscard]] std::uint64_t find_living(PageRun& run, std::uint64_t wanted, Shapes& shapes) const;
   [[nodiscard]] bool lives(std::uint32_t death, std::uint32_t error) const noexcept;
   [[nodiscard]] bool is_tie(std::uint32_t death, std::uint32_t error) const noexcept;
+  [[nodiscard]] bool has_no_more(const PageRun& run) const noexcept;
   [[nodiscard]] bool read_star(const PageRun& run, std::uint32_t k, PageStar& out) const noexcept;
-  [[nodiscard]] bool take_star(const Shapes& shapes, const PageStar& star, std::uint32_t k,
+  [[nodiscard]] bool read_heights(PageRun& run, std::uint32_t k, PageStar& out) const;
+  [[nodiscard]] bool take_star(PageRun& run, const Shapes& shapes, std::uint32_t k, PageStar& star,
                                LivingStars& out) const;
   [[nodiscard]] bool is_plain(const Shapes& shapes, const PageStar& star,
                               std::uint32_t k) const noexcept;
+  template <bool kIsLocal>
   [[nodiscard]] bool take_plain(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                                 LivingStars& out) const;
   [[nodiscard]] bool take_any(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                               LivingStars& out) const;
+  [[nodiscard]] bool look_up(const PageStar& star, std::size_t begin, LivingStars& out) const;
   [[nodiscard]] bool has_step(const PageStar& star, std::size_t begin,
                               const LivingStars& out) const noexcept;
-  [[nodiscard]] bool add(const PageStar& star, std::size_t begin, LivingStars& out) const;
+  [[nodiscard]] bool meet_box(const PageStar& star, std::size_t begin, LivingStars& out) const;
+  [[nodiscard]] bool are_heights_sound(const PageStar& star, std::size_t begin,
+                                       const LivingStars& out) const noexcept;
 
   const RecordPage& page_;
   const layout::NodeEntry& descriptor_;
   HeightType type_;
   const LivingFilter& filter_;
   std::int32_t level_;
-  bool is_within_;                                  ///< All stars lie in the filter's box.
+  bool is_within_;  ///< All stars lie in the filter's box.
+  /// The heights of vertices are looked up, once a triangle of theirs is known to meet the box.
+  bool is_local_;
   std::int64_t low_, high_, star_low_, star_high_;  ///< Heights of the descriptor, ordered.
   HeightInterval no_heights_;
   std::span<const std::uint64_t> steps_;  ///< Those of the filter that lie within the page.
@@ -145,6 +152,7 @@ LivingPage::LivingPage(const RecordPage& page, const LivingFilter& filter) noexc
       level_(level_bits(filter.level)),
       is_within_(contains(filter.box, {descriptor_.star_min_x, descriptor_.star_min_y,
                                        descriptor_.star_max_x, descriptor_.star_max_y})),
+      is_local_(page.columns().is_local()),
       low_(ordered_height(descriptor_.height_lo, type_)),
       high_(ordered_height(descriptor_.height_hi, type_)),
       star_low_(ordered_height(descriptor_.star_height_lo, type_)),
@@ -155,12 +163,14 @@ LivingPage::LivingPage(const RecordPage& page, const LivingFilter& filter) noexc
 
 std::uint32_t LivingPage::take(LivingStars& out) const {
   // The numbers of a star beside its shape, as far as a living triangle needs them.
-  constexpr std::array kHead{PageColumn::kX,     PageColumn::kY,        PageColumn::kHeight,
-                             PageColumn::kBelow, PageColumn::kAbove,    PageColumn::kError,
-                             PageColumn::kFlags, PageColumn::kDeviation};
+  constexpr std::array kHead{PageColumn::kX, PageColumn::kY, PageColumn::kError, PageColumn::kFlags,
+                             PageColumn::kDeviation};
   Shapes shapes;  // NOLINT: written before read
   PageStar star;
   for (PageRun run(page_); run.next();) {
+    if (has_no_more(run)) {
+      break;
+    }
     std::uint64_t left = chosen_stars(page_, filter_, is_within_, run);
     if (left == 0) {
       continue;
@@ -171,6 +181,9 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
     for (const PageColumn c : kHead) {
       run.take_some(c, left);
     }
+    if (!is_local_) {
+      run.take_heights(left);
+    }
     if (filter_.with_ties) {
       run.take_some(PageColumn::kRank, left);
     }
@@ -178,12 +191,23 @@ std::uint32_t LivingPage::take(LivingStars& out) const {
       const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
       // The first record that cannot be ends all: what was appended of the page is dropped with it.
       if (!shapes.is_sound(k, page_.columns().rings_end()) || !read_star(run, k, star) ||
-          !take_star(shapes, star, k, out)) [[unlikely]] {
+          !take_star(run, shapes, k, star, out)) [[unlikely]] {
         return run.first() + k;
       }
     }
   }
   return page_.records();
+}
+
+/// Whether errors descend, and none is above the level from a run on.
+bool LivingPage::has_no_more(const PageRun& run) const noexcept {
+  const std::int64_t below = most_error_below(filter_);
+  if (below < 0 || !page_.columns().has_descending_errors()) {
+    return false;
+  }
+  std::array<std::uint64_t, 1> first{};
+  page_.columns().read_errors(page_.bytes(), run.first(), first);
+  return static_cast<std::int64_t>(first[0]) <= below;
 }
 
 /// Reads the shapes of the runs of rings that hold a wanted record.
@@ -235,8 +259,7 @@ bool LivingPage::is_tie(std::uint32_t death, std::uint32_t error) const noexcept
 
 /// Those of the wanted records of a run of whose stars a triangle lives, and those that are not
 /// sound.
-std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
-                                      Shapes& shapes) const noexcept {
+std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted, Shapes& shapes) const {
   // Below level 0 only what lives on lives, and lives() then looks at no error.
   if (level_ >= 0) {
     run.take_some(PageColumn::kError, wanted);
@@ -277,56 +300,90 @@ std::uint64_t LivingPage::find_living(PageRun& run, std::uint64_t wanted,
   return result;
 }
 
-/// A star without its corners. False when it cannot be one.
+/// A star without its corners and its heights. False when it cannot be one.
 bool LivingPage::read_star(const PageRun& run, std::uint32_t k, PageStar& out) const noexcept {
   const auto at = [&](PageColumn c) { return static_cast<std::int64_t>(run.at(c, k)); };
   const layout::NodeEntry& d = descriptor_;
   const std::int64_t x = at(PageColumn::kX);
   const std::int64_t y = at(PageColumn::kY);
   const auto flags = static_cast<unsigned>(at(PageColumn::kFlags));
-  const bool has_heights = (flags & kPageNoHeights) == 0;
   const std::uint32_t deviation = run.deviation_bits(k);
   out.error = run.error_bits(k);
-  const OrderedInterval heights = run.heights(k);
-  out.height = static_cast<std::int64_t>(heights.height);
-  out.low = static_cast<std::int64_t>(heights.low);
-  out.high = static_cast<std::int64_t>(heights.high);
   out.is_closed = (flags & (kPageNoLeft | kPageNoRight)) == 0;
   out.star.has_height = (flags & kPageVertexVoid) == 0;
-  // The descriptor was checked: what lies within its boxes is on the grid, and what lies within its
-  // intervals is a height, no NaN.
+  // The descriptor was checked: what lies within its boxes is on the grid.
   if (x < d.star_min_x || y < d.star_min_y || x > d.star_max_x || y > d.star_max_y ||
-      (has_heights && (out.low < low_ || out.high > high_)) ||
-      (out.star.has_height &&
-       (!has_heights || out.height < star_low_ || out.height > star_high_)) ||
       out.error < d.error_min || out.error > d.error_max || deviation > d.deviation_max) {
     return false;
   }
   out.star.u = {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-  const auto bits = [&](std::int64_t ordered) {
-    return height_of_ordered(static_cast<std::uint32_t>(ordered), type_);
-  };
-  out.star.height = out.star.has_height ? bits(out.height) : 0;
-  out.star.height_lo = has_heights ? bits(out.low) : no_heights_.lo;
-  out.star.height_hi = has_heights ? bits(out.high) : no_heights_.hi;
   out.star.is_tied = filter_.with_ties && static_cast<std::int64_t>(out.error) == level_;
   out.star.ends_at_w = (flags & kPageNoLeft) != 0;
   // The rank decides among records of one error alone: only tied stars need theirs.
   out.star.rank =
       out.star.is_tied ? static_cast<std::uint16_t>(at(PageColumn::kRank)) : std::uint16_t{0};
   out.star.deviation = short_value(static_cast<ShortBits>(deviation));
+  return true;
+}
+
+/// The heights of a star that has been read. False when they cannot be its.
+bool LivingPage::read_heights(PageRun& run, std::uint32_t k, PageStar& out) const {
+  run.take_heights(std::uint64_t{1} << k);
+  const OrderedInterval heights = run.heights(k);
+  out.height = static_cast<std::int64_t>(heights.height);
+  out.low = static_cast<std::int64_t>(heights.low);
+  out.high = static_cast<std::int64_t>(heights.high);
+  const bool has_heights = (run.at(PageColumn::kFlags, k) & kPageNoHeights) == 0;
+  // The descriptor was checked: what lies within its intervals is a height, no NaN.
+  if ((has_heights && (out.low < low_ || out.high > high_)) ||
+      (out.star.has_height && (!has_heights || out.height < star_low_ || out.height > star_high_ ||
+                               out.height < page_.least_height()))) {
+    return false;
+  }
+  const auto bits = [&](std::int64_t ordered) {
+    return height_of_ordered(static_cast<std::uint32_t>(ordered), type_);
+  };
+  out.star.height = out.star.has_height ? bits(out.height) : 0;
+  out.star.height_lo = has_heights ? bits(out.low) : no_heights_.lo;
+  out.star.height_hi = has_heights ? bits(out.high) : no_heights_.hi;
   out.low = std::max(out.low, star_low_);
   // Ordered heights are never negative, so -1 refuses each corner that has a height all the same.
   out.high = has_heights ? std::min(out.high, star_high_) : -1;
   return true;
 }
 
-bool LivingPage::take_star(const Shapes& shapes, const PageStar& star, std::uint32_t k,
+/// Appends what lives of a star, unless none of its triangles meets the filter's box, or it is not
+/// asked for by its heights. False when it cannot be what was written.
+bool LivingPage::take_star(PageRun& run, const Shapes& shapes, std::uint32_t k, PageStar& star,
                            LivingStars& out) const {
   const std::size_t begin = out.corners.size();
-  return (is_plain(shapes, star, k) ? take_plain(shapes, star, k, out)
-                                    : take_any(shapes, star, k, out)) &&
-         add(star, begin, out);
+  const auto take_corners = [&] {
+    if (!is_plain(shapes, star, k)) return take_any(shapes, star, k, out);
+    return is_local_ ? take_plain<true>(shapes, star, k, out)
+                     : take_plain<false>(shapes, star, k, out);
+  };
+  if ((!is_local_ && !read_heights(run, k, star)) || !take_corners() ||
+      !meet_box(star, begin, out)) {
+    return false;
+  }
+  if (out.corners.size() == begin) {
+    return true;
+  }
+  if (is_local_ && !(read_heights(run, k, star) && look_up(star, begin, out))) {
+    return false;
+  }
+  if (!are_heights_sound(star, begin, out)) {
+    return false;
+  }
+  if (!filter_.steps.empty() && !star.star.is_tied && !has_step(star, begin, out)) {
+    out.corners.grow(begin);
+    return true;
+  }
+  const std::size_t stars = out.stars.size();
+  out.stars.grow(stars + 1);
+  out.stars.data()[stars] = star.star;
+  out.stars.data()[stars].corner_end = static_cast<std::uint32_t>(out.corners.size());
+  return true;
 }
 
 /// Whether a star is as nearly all are: nothing is void around it, a load gets a corner, and where no
@@ -338,7 +395,9 @@ bool LivingPage::is_plain(const Shapes& shapes, const PageStar& star,
          shapes.common_bits == 0 && star.is_closed && star.star.has_height;
 }
 
-/// Appends the corners of what lives of such a star. False when one cannot be what was written.
+/// Appends the corners of what lives of such a star, without heights where these are looked up. False
+/// when one cannot be what was written.
+template <bool kIsLocal>
 bool LivingPage::take_plain(const Shapes& shapes, const PageStar& star, std::uint32_t k,
                             LivingStars& out) const {
   const layout::NodeEntry& d = descriptor_;
@@ -359,12 +418,16 @@ bool LivingPage::take_plain(const Shapes& shapes, const PageStar& star, std::uin
     const std::int64_t x = star.star.u.x + with_sign(word & offset_mask, offset_bits);
     const std::int64_t y =
         star.star.u.y + with_sign((word >> offset_bits) & offset_mask, offset_bits);
-    const std::int64_t height =
-        star.height + with_sign((word >> (2 * offset_bits)) & height_mask, height_bits);
-    outside |= (x - d.star_min_x) | (d.star_max_x - x) | (y - d.star_min_y) | (d.star_max_y - y) |
-               (height - star.low) | (star.high - height);
+    outside |= (x - d.star_min_x) | (d.star_max_x - x) | (y - d.star_min_y) | (d.star_max_y - y);
+    HeightBits bits = 0;
+    if constexpr (!kIsLocal) {
+      const std::int64_t height =
+          star.height + with_sign((word >> (2 * offset_bits)) & height_mask, height_bits);
+      outside |= (height - star.low) | (star.high - height);
+      bits = height_of_ordered(static_cast<std::uint32_t>(height), type_);
+    }
     *to++ = {{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-             height_of_ordered(static_cast<std::uint32_t>(height), type_),
+             bits,
              static_cast<std::uint8_t>((living >> i & 1) * LivingCorner::kLives)};
   };
   // Corner i is wanted as the beginning of triangle i, or as the end of triangle i - 1.
@@ -401,13 +464,14 @@ bool LivingPage::take_any(const Shapes& shapes, const PageStar& star, std::uint3
     if (is_awaited || is_wanted || (star.star.is_tied && i < degree)) {
       const std::int64_t x = star.star.u.x + c.x;
       const std::int64_t y = star.star.u.y + c.y;
-      const std::int64_t height = star.height + c.height;
+      const std::int64_t height = is_local_ ? 0 : star.height + c.height;
       is_inside = is_inside && d.star_min_x <= x && x <= d.star_max_x && d.star_min_y <= y &&
                   y <= d.star_max_y &&
-                  (!c.has_height || (star.low <= height && height <= star.high));
+                  (is_local_ || !c.has_height || (star.low <= height && height <= star.high));
       *to++ = {
           {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)},
-          c.has_height ? height_of_ordered(static_cast<std::uint32_t>(height), type_) : 0,
+          c.has_height && !is_local_ ? height_of_ordered(static_cast<std::uint32_t>(height), type_)
+                                     : 0,
           static_cast<std::uint8_t>((is_wanted ? unsigned{LivingCorner::kLives} : 0U) |
                                     (is_wanted && filter_.with_ties && is_tie(c.death, star.error)
                                          ? unsigned{LivingCorner::kTied}
@@ -446,13 +510,21 @@ bool LivingPage::has_step(const PageStar& star, std::size_t begin,
   return !steps_within(steps_, low, high).empty();
 }
 
-/// Appends a star whose corners were appended from `begin` on, unless it is not asked for by its
-/// heights, or none of its triangles meets the filter's box. False when a triangle cannot be what was written.
-bool LivingPage::add(const PageStar& star, std::size_t begin, LivingStars& out) const {
-  if (!filter_.steps.empty() && !star.star.is_tied && !has_step(star, begin, out)) {
-    out.corners.grow(begin);
-    return true;
+/// Looks up the heights of a star's corners, of which each has one. False when one cannot be the star's.
+bool LivingPage::look_up(const PageStar& star, std::size_t begin, LivingStars& out) const {
+  std::int64_t outside = 0;
+  LivingCorner* const end = out.corners.data() + out.corners.size();
+  for (LivingCorner* c = out.corners.data() + begin; c < end; ++c) {
+    const std::int64_t height = page_.sample(c->position.x, c->position.y);
+    outside |= (height - star.low) | (star.high - height) | (height - page_.least_height());
+    c->height = height_of_ordered(static_cast<std::uint32_t>(height), type_);
   }
+  return outside >= 0;
+}
+
+/// Lets no triangle live whose box does not meet the filter's, and drops the corners that were appended
+/// from `begin` on if none is left. False when a triangle cannot be what was written.
+bool LivingPage::meet_box(const PageStar& star, std::size_t begin, LivingStars& out) const {
   bool is_sound = true;
   // A tied star stays even if no triangle of it meets the box: its fan says which others are gone.
   bool any = star.star.is_tied;
@@ -461,11 +533,8 @@ bool LivingPage::add(const PageStar& star, std::size_t begin, LivingStars& out) 
     if ((c->flags & LivingCorner::kLives) == 0) {
       continue;
     }
-    const bool has_heights =
-        star.star.has_height && ((c[0].flags | c[1].flags) & LivingCorner::kNoHeight) == 0;
     // All corners lie within the descriptor's box, thus on the grid, as turn() requires.
-    is_sound &= (turn(star.star.u, c[0].position, c[1].position) > 0) &
-                (has_heights || (c->flags & LivingCorner::kVoid) != 0);
+    is_sound &= turn(star.star.u, c[0].position, c[1].position) > 0;
     const bool is_met =
         is_within_ ||
         meets(united(united(box_of(star.star.u), c[0].position), c[1].position), filter_.box);
@@ -474,13 +543,24 @@ bool LivingPage::add(const PageStar& star, std::size_t begin, LivingStars& out) 
   }
   if (!any) {
     out.corners.grow(begin);
-    return is_sound;
   }
-  const std::size_t stars = out.stars.size();
-  out.stars.grow(stars + 1);
-  out.stars.data()[stars] = star.star;
-  out.stars.data()[stars].corner_end = static_cast<std::uint32_t>(out.corners.size());
   return is_sound;
+}
+
+/// Whether each living triangle that is not void has three heights.
+bool LivingPage::are_heights_sound(const PageStar& star, std::size_t begin,
+                                   const LivingStars& out) const noexcept {
+  if (star.star.has_height && page_.columns().common_bits() == 0) {
+    return true;
+  }
+  const LivingCorner* const end = out.corners.data() + out.corners.size();
+  for (const LivingCorner* c = out.corners.data() + begin; c < end; ++c) {
+    if ((c->flags & (LivingCorner::kLives | LivingCorner::kVoid)) == LivingCorner::kLives &&
+        (!star.star.has_height || ((c[0].flags | c[1].flags) & LivingCorner::kNoHeight) != 0)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace

@@ -26,8 +26,16 @@ bool asks_within(const StarPredicate& condition, const GridBox& box) {
   return condition.reach() != kAllPlaces && contains(box, condition.reach());
 }
 
-PageId id_of(PageId page) { return page; }
-PageId id_of(const DirectoryPage& page) { return page.id; }
+void announce(const StoreFile& store, std::span<const PageId> pages, const GridBox&,
+              QueryContext& context) {
+  store.announce(pages, context.heights(), context.cost.io);
+}
+/// The directory knows of no page where its stars end.
+void announce(const StoreFile& store, std::span<const DirectoryPage> pages, const GridBox& place,
+              QueryContext& context) {
+  store.announce(pages, context.cost.io);
+  store.announce_heights_around(std::span(&place, 1), context.heights(), context.cost.io);
+}
 
 /// The condition of pages with stars across a step, where there are steps.
 class PlaceStars final : public StarPredicate {
@@ -81,6 +89,7 @@ bool LivingReader::read(const LivingPlace& place, QueryContext& context, LivingV
   filter_.also = place.steps.empty() ? place.stars : &across_steps;
   filter_.each = place.asks_each_star ? place.stars : nullptr;
   set_level(stars_.detail(), filter_);
+  store_.announce_heights_around(std::span(&place.box, 1), context.heights(), context.cost.io);
   if (asks_directory()) {
     std::vector<DirectoryPage> named;
     store_.directory()->find_in(filter_, named, context.cost.io);
@@ -151,9 +160,7 @@ bool LivingReader::take_all(std::span<const Page> pages, std::uint64_t records,
   const auto take = [&](const LivingTriangle& t) { visitor.take(t); };
   stars_.visit_t0([&](const GridBox& box) { return meets(box, place.box); },
                   [&](const LivingTriangle& t) { return is_wanted(t, place); }, take);
-  std::vector<PageId> ids(pages.size());
-  std::transform(pages.begin(), pages.end(), ids.begin(), [](const Page& p) { return id_of(p); });
-  store_.pages().announce(ids, context.cost.io);
+  announce(store_, pages, place.box, context);
   for (const Page& page : pages) {
     context.check_stop();
     if (!take_page(page, place, context, visitor)) {

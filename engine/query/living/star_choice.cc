@@ -13,7 +13,7 @@ namespace ptin {
 namespace {
 
 /// Takes the sides of the roi of a few records.
-void take_sides(PageRun& run, std::uint64_t records) noexcept {
+void take_sides(PageRun& run, std::uint64_t records) {
   for (const PageColumn c :
        {PageColumn::kWest, PageColumn::kSouth, PageColumn::kEast, PageColumn::kNorth}) {
     run.take_some(c, records);
@@ -22,10 +22,9 @@ void take_sides(PageRun& run, std::uint64_t records) noexcept {
 
 /// The records of a run whose roi meets a box: the roi is looked at where u lies outside of the box,
 /// but no farther from it than any roi of the page reaches.
-std::uint64_t near_box(const RecordPage& page, const GridBox& box, PageRun& run) noexcept {
+std::uint64_t near_box(const RecordPage& page, const GridBox& box, PageRun& run) {
   const auto reach = [&](PageColumn c) {
-    return static_cast<std::int64_t>(
-        (std::uint64_t{1} << page.columns().header().width[static_cast<std::size_t>(c)]) - 1);
+    return static_cast<std::int64_t>((std::uint64_t{1} << page.columns().width(c)) - 1);
   };
   const std::int64_t low_x = box.min_x - reach(PageColumn::kEast);
   const std::int64_t high_x = box.max_x + reach(PageColumn::kWest);
@@ -52,53 +51,61 @@ std::uint64_t near_box(const RecordPage& page, const GridBox& box, PageRun& run)
   return near;
 }
 
-/// The records of a run whose heights may be those that are asked for.
-std::uint64_t with_heights(const Interval& asked, PageRun& run) noexcept {
-  for (const PageColumn c :
-       {PageColumn::kHeight, PageColumn::kBelow, PageColumn::kAbove, PageColumn::kFlags}) {
-    run.take(c);
-  }
-  std::uint64_t wanted = 0;
-  for (std::uint32_t k = 0; k < run.count(); ++k) {
-    wanted |= std::uint64_t{meets(run.codes(k), asked)} << k;
+/// Those of wanted records whose error is above what no star is of.
+std::uint64_t above(std::int64_t below, std::uint64_t wanted, PageRun& run) {
+  run.take_some(PageColumn::kError, wanted);
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    wanted ^= std::uint64_t{static_cast<std::int64_t>(run.error_bits(k)) <= below} << k;
   }
   return wanted;
 }
 
-/// The records of a run within whose heights a step lies. A record without heights spans none.
-std::uint64_t with_steps(std::span<const std::uint64_t> steps, PageRun& run) noexcept {
-  const std::uint64_t* const height = run.take(PageColumn::kHeight);
-  const std::uint64_t* const below = run.take(PageColumn::kBelow);
-  const std::uint64_t* const above = run.take(PageColumn::kAbove);
+/// Those of wanted records whose heights may be those that are asked for.
+std::uint64_t with_heights(const Interval& asked, std::uint64_t wanted, PageRun& run) {
+  run.take_heights(wanted);
+  run.take_some(PageColumn::kFlags, wanted);
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    wanted ^= std::uint64_t{!meets(run.codes(k), asked)} << k;
+  }
+  return wanted;
+}
+
+/// Those of wanted records within whose heights a step lies. A record without heights spans none.
+std::uint64_t with_steps(std::span<const std::uint64_t> steps, std::uint64_t wanted, PageRun& run) {
+  run.take_heights(wanted);
   std::array<std::uint64_t, PageRun::kMost> low, high;  // NOLINT: written before read
   std::uint64_t least = UINT64_MAX;
   std::uint64_t most = 0;
-  for (std::uint32_t k = 0; k < run.count(); ++k) {
-    low[k] = height[k] - below[k];
-    high[k] = height[k] + above[k];
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+    const OrderedInterval heights = run.heights(k);
+    low[k] = heights.low;
+    high[k] = heights.high;
     least = std::min(least, low[k]);
     most = std::max(most, high[k]);
   }
-  std::uint64_t wanted = 0;
+  std::uint64_t crossed = 0;
   for (const std::uint64_t step : steps_within(steps, least, most)) {
-    for (std::uint32_t k = 0; k < run.count(); ++k) {
-      wanted |= static_cast<std::uint64_t>((low[k] < step) & (step <= high[k])) << k;
+    for (std::uint64_t left = wanted & ~crossed; left != 0; left &= left - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+      crossed |= static_cast<std::uint64_t>((low[k] < step) & (step <= high[k])) << k;
     }
   }
-  return wanted;
+  return crossed;
 }
 
 }  // namespace
 
 std::uint64_t chosen_stars(const RecordPage& page, const LivingFilter& filter, bool is_within,
-                           PageRun& run) noexcept {
+                           PageRun& run) {
   std::uint64_t wanted = is_within ? ~std::uint64_t{0} >> (PageRun::kMost - run.count())
                                    : near_box(page, filter.box, run);
-  if (wanted != 0 && filter.heights != kAllHeights) {
-    wanted &= with_heights(filter.heights, run);
-  }
-  if (wanted != 0 && !filter.steps.empty()) {
-    wanted &= with_steps(filter.steps, run);
+  // Heights of a local page are looked up, so the other conditions come first.
+  const std::int64_t below = most_error_below(filter);
+  if (wanted != 0 && below >= 0) {
+    wanted = above(below, wanted, run);
   }
   if (filter.each != nullptr) {
     run.take_some(PageColumn::kX, wanted);
@@ -110,13 +117,11 @@ std::uint64_t chosen_stars(const RecordPage& page, const LivingFilter& filter, b
     const StarAttributes star{run.roi(k), {}, kInfinity, -kInfinity};
     wanted ^= std::uint64_t{!filter.each->may_hold(star)} << k;
   }
-  const std::int64_t below = level_bits(filter.level) - (filter.with_ties ? 1 : 0);
-  if (below >= 0) {  // else no error is below the level
-    run.take_some(PageColumn::kError, wanted);
+  if (wanted != 0 && filter.heights != kAllHeights) {
+    wanted = with_heights(filter.heights, wanted, run);
   }
-  for (std::uint64_t left = wanted; left != 0 && below >= 0; left &= left - 1) {
-    const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-    wanted ^= std::uint64_t{static_cast<std::int64_t>(run.error_bits(k)) <= below} << k;
+  if (wanted != 0 && !filter.steps.empty()) {
+    wanted = with_steps(filter.steps, wanted, run);
   }
   return wanted;
 }

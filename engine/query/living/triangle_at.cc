@@ -138,7 +138,7 @@ void Finder::announce_far() {
   for (const StarPage& page : pages_) {
     ids.push_back(page.id);
   }
-  store_.pages().announce(ids, context_.cost.io);
+  store_.announce(ids, context_.heights(), context_.cost.io);
 }
 
 void Finder::read(PageId page) { stars_.read(page, filter_, context_); }
@@ -179,6 +179,10 @@ class Finder::SmallestFirst final : public BestStarVisitor {
   }
   /// On a vertex no triangle ends the search, and most positions of the grid have one.
   [[nodiscard]] bool wants_all() const override { return is_position(spot_); }
+  void will_visit(std::span<const GridBox> stars) override {
+    QueryContext& context = finder_.context_;
+    finder_.store_.announce_heights(stars, context.heights(), context.cost.io);
+  }
   Merit visit(PageId page, const StarAttributes&) override {
     finder_.context_.check_stop();
     finder_.read(page);
@@ -202,6 +206,7 @@ void Finder::find_one(Spot spot, TriangleAt& found) {
     return;
   }
   filter_.box = box_around(spot);
+  store_.announce_heights_around(std::span(&filter_.box, 1), context_.heights(), context_.cost.io);
   SmallestFirst visitor(*this, spot, found);
   store_.star_index().search_stars_best_first(filter_, visitor, kNoMerit, context_.cost.io);
   stars_.settle(take);
@@ -241,6 +246,7 @@ void Finder::find_by_directory(std::span<const Spot> spots, std::span<TriangleAt
       asked.push_back(i);
     }
   }
+  store_.announce_heights_around(places, context_.heights(), context_.cost.io);
   std::vector<std::vector<DirectoryPage>> named(places.size());
   store_.directory()->find(places, filter_, named, context_.cost.io);
   context_.check_stop();
@@ -266,6 +272,7 @@ void Finder::find_by_directory(std::span<const Spot> spots, std::span<TriangleAt
         pages.end());
     std::erase_if(pages, is_done);
     store_.announce(pages, context_.cost.io);
+    if (is_first) store_.announce_heights_around(places, context_.heights(), context_.cost.io);
     for (const DirectoryPage& page : pages) {
       context_.check_stop();
       stars_.read(page, filter_, context_);

@@ -39,7 +39,7 @@ std::size_t SelectiveRefinement::refine(std::span<const PageId> pages,
                                         const AttributePredicate* beyond) {
   const StoreFile& store = terrain_.store();
   context.admit(bytes_with(pages));
-  store.pages().announce(pages, context.cost.io);
+  store.announce(pages, context.heights(), context.cost.io);
   splits_.clear();
   entering_.clear();
   const std::uint64_t most = most_records(store, pages);
@@ -49,7 +49,7 @@ std::size_t SelectiveRefinement::refine(std::span<const PageId> pages,
     context.check_stop();
     records_.clear();
     context.cost.records_examined +=
-        store.read_matching(page, predicate, records_, context.cost.io);
+        store.read_matching(page, predicate, records_, context.heights(), context.cost.io);
     context.cost.records_retrieved += records_.size();
     for (const VertexSplit& r : records_) {
       const PendingSplit split = pending_of(r, page);

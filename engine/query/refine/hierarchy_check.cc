@@ -21,6 +21,7 @@
 #include "engine/query/refine/split_site.h"
 #include "engine/query/select/accounting.h"
 #include "engine/query/select/predicate.h"
+#include "engine/query/select/retrieval.h"
 #include "engine/query/shape/grid_cell.h"
 #include "engine/stop.h"
 
@@ -36,6 +37,11 @@ struct CellRecord {
   std::uint32_t page;          ///< Modulo 2^32, for faults.
   std::uint32_t degree;        ///< Corners of its ring.
   std::uint64_t first_corner;  ///< First corner of its ring, among all of the cell.
+};
+
+/// What the check of a cell takes at most.
+struct CellLoad {
+  std::uint64_t records, bytes;
 };
 
 /// About so many corners have rings at most, over a page.
@@ -97,9 +103,11 @@ class HierarchyCheck {
 
  private:
   void report(std::string what, std::string where);
-  [[nodiscard]] std::uint64_t bytes_for(const GridBox& box);
+  [[nodiscard]] CellLoad load_of(const GridBox& box);
+  [[nodiscard]] std::uint64_t bytes_for(std::uint64_t records) const;
+  [[nodiscard]] std::uint64_t reaching_into(const GridBox& box, std::span<const PageId> pages);
   void look_into(const GridCell& cell);
-  void read(const GridBox& box);
+  void read(const GridBox& box, std::uint64_t most);
   void apply_all(const GridCell& cell);
   void look_at_floor(const GridCell& cell);
   [[nodiscard]] std::string apply(const VertexSplit& r, Star& star, SplitResult& made);
@@ -152,7 +160,7 @@ void HierarchyCheck::run() {
         cell_bytes(static_cast<std::uint64_t>(static_cast<double>(store.record_count()) * share));
     // A search of the index lists all pages: not worth it for cells that are far too large anyway.
     if (even / 16 > std::min(limit, kCellBytes)) return false;
-    const std::uint64_t bytes = bytes_for(cell.box());
+    const std::uint64_t bytes = load_of(cell.box()).bytes;
     // Four times the share: mostly records that reach beyond the cell, and would be applied again
     // in each of its parts.
     return bytes <= std::min(limit, kCellBytes) || (bytes <= limit && bytes / 4 > even);
@@ -186,30 +194,60 @@ void HierarchyCheck::compare_deaths() {
   }
 }
 
-std::uint64_t HierarchyCheck::bytes_for(const GridBox& box) {
+CellLoad HierarchyCheck::load_of(const GridBox& box) {
   std::vector<PageId> pages;
   terrain_.index().search(MeetsBox(box), pages, context_.cost.io);
+  std::uint64_t records = most_records(terrain_.store(), pages);
+  // Pages of a small cell hold mostly records that do not reach into it. To count them takes as long as
+  // to read them, so it is done where it may decide.
+  const std::uint64_t limit = request_.limits.memory_bytes;
+  if (bytes_for(records) > limit && bytes_for(records / 4) <= limit) {
+    records = reaching_into(box, pages);
+  }
+  return {records, bytes_for(records)};
+}
+
+/// Bytes that the check of a cell of so many records takes, with T0.
+std::uint64_t HierarchyCheck::bytes_for(std::uint64_t records) const {
   const Tin& t0 = terrain_.t0();
-  const std::uint64_t records = most_records(terrain_.store(), pages);
   // Every sample is a vertex. The rim of a cell is far less than the cell, or less than a page.
   const std::uint64_t floor_bytes =
       floor_ ? FloorCheck::kPositionBytes * (records + t0.vertices.size()) : 0;
   return bytes_of(t0) + t0.vertices.size() * kValidationBytes + cell_bytes(records) + floor_bytes;
 }
 
+std::uint64_t HierarchyCheck::reaching_into(const GridBox& box, std::span<const PageId> pages) {
+  const MeetsBox meets_box(box);
+  std::uint64_t records = 0;
+  std::vector<PendingSplit> of_page;
+  for (const PageId page : pages) {
+    of_page.clear();
+    try {
+      read_pages(terrain_.store(), std::span(&page, 1), meets_box, context_, of_page);
+      records += of_page.size();
+    } catch (const Error& e) {
+      // A page that is broken is told by the check of the cell, which reads it again.
+      if (e.code() != ErrorCode::corruption) throw;
+      records += most_records(terrain_.store(), std::span(&page, 1));
+    }
+  }
+  return records;
+}
+
 void HierarchyCheck::look_into(const GridCell& cell) {
   ++report_.cells;
   const GridBox box = cell.box();
-  if (const std::uint64_t bytes = bytes_for(box); bytes > request_.limits.memory_bytes) {
+  const CellLoad load = load_of(box);
+  if (load.bytes > request_.limits.memory_bytes) {
     throw Error(ErrorCode::resource_exhausted,
                 "the records around position " + text_of(GridPoint{box.min_x, box.min_y}) +
-                    " take " + std::to_string((bytes + 0xFFFFF) >> 20) +
+                    " take " + std::to_string((load.bytes + 0xFFFFF) >> 20) +
                     " MiB to check, more than the limit of " +
                     std::to_string(request_.limits.memory_bytes >> 20) + " MiB: give more memory",
                 terrain_.store().path());
   }
   try {
-    read(box);
+    read(box, load.records);
     apply_all(cell);
   } catch (const Error& e) {
     if (e.code() != ErrorCode::corruption) throw;
@@ -218,21 +256,21 @@ void HierarchyCheck::look_into(const GridCell& cell) {
 }
 
 /// Fills `records_` with the records whose roi meets the box, and `order_` with their places by
-/// falling rank; those of one rank keep the order of the file.
-void HierarchyCheck::read(const GridBox& box) {
+/// falling rank; those of one rank keep the order of the file. There are `most` at most.
+void HierarchyCheck::read(const GridBox& box, std::uint64_t most) {
   const StoreFile& store = terrain_.store();
   const MeetsBox meets_box(box);
   std::vector<PageId> pages;
   terrain_.index().search(meets_box, pages, context_.cost.io);
-  store.pages().announce(pages, context_.cost.io);
+  store.announce(pages, context_.heights(), context_.cost.io);
   records_.clear();
   corners_.clear();
-  reserve_large(records_, most_records(store, pages));
+  reserve_large(records_, most);
   StarredRecords of_page;
   for (const PageId page : pages) {
     context_.check_stop();
     of_page.clear();
-    store.read_starred(page, of_page, context_.cost.io);
+    store.read_starred(page, of_page, context_.heights(), context_.cost.io);
     for (std::size_t i = 0; i < of_page.size(); ++i) {
       const VertexSplit& r = of_page.splits[i];
       if (!meets_box.holds(attributes_of(r, heights_))) continue;

@@ -17,7 +17,7 @@ void PageCache::announce(std::span<const PageId> pages, QueryContext& context) c
       missing.push_back(page);
     }
   }
-  store_.pages().announce(missing, context.cost.io);
+  store_.announce(missing, context.heights(), context.cost.io);
 }
 
 std::span<const VertexSplit> PageCache::records(PageId page, QueryContext& context) {
@@ -27,7 +27,7 @@ std::span<const VertexSplit> PageCache::records(PageId page, QueryContext& conte
   }
   Entry entry{page, {}};
   entry.records.reserve(store_.page_info(page).records);
-  store_.read_records(page, entry.records, context.cost.io);
+  store_.read_records(page, entry.records, context.heights(), context.cost.io);
   make_room(entry.bytes());
   entries_.push_front(std::move(entry));
   try {

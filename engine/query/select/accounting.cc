@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "storage/sample_heights.h"
 
 namespace ptin {
 
@@ -22,6 +23,22 @@ void QueryCost::add_counts(const QueryCost& part) noexcept {
   io.remote_rounds += part.io.remote_rounds;
   io.remote_requests += part.io.remote_requests;
   io.remote_bytes += part.io.remote_bytes;
+}
+
+QueryContext::OwnHeights::OwnHeights() noexcept = default;
+QueryContext::OwnHeights::OwnHeights(const OwnHeights& /*other*/) noexcept {}
+QueryContext::OwnHeights::OwnHeights(OwnHeights&&) noexcept = default;
+QueryContext::OwnHeights::~OwnHeights() = default;
+QueryContext::OwnHeights& QueryContext::OwnHeights::operator=(OwnHeights&&) noexcept = default;
+
+QueryContext::OwnHeights& QueryContext::OwnHeights::operator=(const OwnHeights& other) noexcept {
+  if (this != &other) kept.reset();
+  return *this;
+}
+
+SampleHeights& QueryContext::heights() {
+  if (heights_.kept == nullptr) heights_.kept = std::make_unique<SampleHeights>();
+  return *heights_.kept;
 }
 
 void QueryContext::throw_cancelled() const {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,8 @@
 #include "storage/file/io_counters.h"
 
 namespace ptin {
+
+class SampleHeights;
 
 /// What an answer cost (promise P9). Counted in the query's own context.
 struct QueryCost {
@@ -99,14 +102,30 @@ class QueryContext {
 
   [[nodiscard]] const std::string& file() const noexcept { return file_; }
 
+  /// Those of vertices of local pages. What they take, at most half a MB, is not counted in what the query
+  /// holds, as the bytes of the page that is looked at are not.
+  [[nodiscard]] SampleHeights& heights();
+
   QueryCost cost;
 
  private:
   [[noreturn]] void throw_cancelled() const;
   [[noreturn]] void throw_exhausted(std::uint64_t bytes) const;
 
+  /// A copy of a context begins with none: it may be another thread's.
+  struct OwnHeights {
+    OwnHeights() noexcept;
+    OwnHeights(const OwnHeights&) noexcept;
+    OwnHeights(OwnHeights&&) noexcept;
+    OwnHeights& operator=(const OwnHeights&) noexcept;
+    OwnHeights& operator=(OwnHeights&&) noexcept;
+    ~OwnHeights();
+    std::unique_ptr<SampleHeights> kept;
+  };
+
   QueryLimits limits_;
   std::uint64_t held_ = 0;  ///< At most the limit.
+  OwnHeights heights_;
   std::string file_;
 };
 

@@ -81,7 +81,7 @@ bool Detail::cut_between(double low, double high, std::uint64_t records, const R
   const AboveError predicate(low);
   std::vector<PageId> pages;
   source.index.search(predicate, pages, context.cost.io);
-  source.store.pages().announce(pages, context.cost.io);
+  source.store.announce(pages, context.heights(), context.cost.io);
   std::uint64_t above = 0;
   std::vector<RecordPlace> within;
   std::vector<VertexSplit> found;
@@ -89,7 +89,7 @@ bool Detail::cut_between(double low, double high, std::uint64_t records, const R
     context.check_stop();
     found.clear();
     context.cost.records_examined +=
-        source.store.read_matching(page, predicate, found, context.cost.io);
+        source.store.read_matching(page, predicate, found, context.heights(), context.cost.io);
     context.cost.records_retrieved += found.size();
     for (const VertexSplit& r : found) {
       if (r.error > high) {

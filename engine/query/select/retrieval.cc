@@ -26,11 +26,12 @@ std::uint64_t most_records(const StoreFile& store, std::span<const PageId> pages
 void read_pages(const StoreFile& store, std::span<const PageId> pages,
                 const AttributePredicate& predicate, QueryContext& context,
                 std::vector<PendingSplit>& out) {
-  store.pages().announce(pages, context.cost.io);
+  store.announce(pages, context.heights(), context.cost.io);
   const std::size_t before = out.size();
   for (const PageId page : pages) {
     context.check_stop();
-    context.cost.records_examined += store.read_matching(page, predicate, out, context.cost.io);
+    context.cost.records_examined +=
+        store.read_matching(page, predicate, out, context.heights(), context.cost.io);
   }
   context.cost.records_retrieved += out.size() - before;
 }

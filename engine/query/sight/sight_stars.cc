@@ -194,6 +194,10 @@ bool SightStars::begin_cells(const GridBox& box, Merit left) {
   return true;
 }
 
+void SightStars::will_visit(std::span<const GridBox> stars) {
+  terrain_.store().announce_heights(stars, context_.heights(), context_.cost.io);
+}
+
 Merit SightStars::visit(PageId page, const StarAttributes& a) {
   if (is_cut_here(bound(a))) {
     return kBestMerit;

@@ -50,6 +50,7 @@ class SightStars final : public SightSearch, private BestStarVisitor, private Be
   };
 
   [[nodiscard]] Merit bound(const StarAttributes& a) const override;
+  void will_visit(std::span<const GridBox> stars) override;
   Merit visit(PageId page, const StarAttributes& a) override;
   [[nodiscard]] Merit bound_of_cells(const GridBox& box, const Interval& codes) const override;
   [[nodiscard]] bool wants_all_cells() const override { return true; }

@@ -101,7 +101,7 @@ template <class Visit>
 void StreamParts::visit_places(const Visit& visit) {
   ExternalSorter<RecordPlace> places = sorter();
   const std::vector<PageId> pages = sets_.pages(nullptr, context_);
-  store_.pages().announce(pages, context_.cost.io);
+  store_.announce(pages, context_.heights(), context_.cost.io);
   StreamSets::Records records;
   base_vertices_ = t0_.vertices.size();
   base_digest_ = stream::digest_of(t0_);
@@ -225,7 +225,7 @@ void StreamParts::work_on(std::size_t cell, QueryContext& context) {
   const GridBox box = cells_[cell].box();
   StreamSets::Records records;
   const std::vector<PageId> pages = sets_.pages(&box, context);
-  store_.pages().announce(pages, context.cost.io);
+  store_.announce(pages, context.heights(), context.cost.io);
   reserve_large(records.missing, most_records(store_, pages));
   for (const PageId page : pages) sets_.read(page, &box, context, records);
   CellCoder coder(records.held.empty() ? t0_ : base_of(records.held, context),

@@ -27,8 +27,8 @@ std::vector<PageId> StreamSets::pages(const GridBox* box, QueryContext& context)
 void StreamSets::read(PageId page, const Set& set, const GridBox* box, QueryContext& context,
                       std::vector<PendingSplit>& out) const {
   const std::size_t before = out.size();
-  context.cost.records_examined +=
-      source_.store.read_matching(page, *within(set.predicate, box), out, context.cost.io);
+  context.cost.records_examined += source_.store.read_matching(
+      page, *within(set.predicate, box), out, context.heights(), context.cost.io);
   context.cost.records_retrieved += out.size() - before;
   if (!set.end) return;
   const auto first = out.begin() + static_cast<std::ptrdiff_t>(before);

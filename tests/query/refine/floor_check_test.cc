@@ -16,6 +16,7 @@
 #include "storage/store_writer.h"
 #include "storage/verify.h"
 #include "tests/query/built_terrain.h"
+#include "tests/storage/small_raster.h"
 #include "tests/support/stored_floor.h"
 #include "tests/support/test_folder.h"
 
@@ -89,16 +90,48 @@ TEST_P(FloorCheckOf, FindsNothingWhereTheyAreTheSame) {
   EXPECT_EQ(read_file(path_), read_file(built().path()));
 }
 
-TEST_P(FloorCheckOf, FindsAnotherHeight) {
-  expect_told("has another height there", [](StoredFloor& f) {
+/// Lets `change` change a sample in each tile that has it.
+void change_sample(StoredFloor& floor, GridPoint at,
+                   const std::function<void(OrderedHeight&)>& change) {
+  const FloorShape& shape = floor.facts.shape;
+  for (std::uint32_t row = 0; row < shape.rows(); ++row) {
+    for (std::uint32_t column = 0; column < shape.columns(); ++column) {
+      FloorTile& tile = floor.tiles.at(FloorShape::key(column, row));
+      const std::int64_t x = at.x - std::int64_t{shape.first_of(column)};
+      const std::int64_t y = at.y - std::int64_t{shape.first_of(row)};
+      if (x < 0 || y < 0 || x >= tile.width || y >= tile.height) continue;
+      change(tile.heights[static_cast<std::size_t>(y * tile.width + x)]);
+    }
+  }
+}
+
+/// T0 has its own heights; those of its neighbours' rings are the samples'.
+TEST_P(FloorCheckOf, FindsAnotherHeightThanThatOfT0) {
+  const CoarsestTin& t0 = built().t0();
+  const auto vertex =
+      std::ranges::find_if(t0.vertices, [](const CoarsestTin::V& v) { return v.has_height != 0; });
+  ASSERT_NE(vertex, t0.vertices.end());
+  const std::vector<VerifyFault> faults = faults_with([&](StoredFloor& f) {
+    change_sample(f, vertex->position, [](OrderedHeight& height) { height += 1; });
+  });
+  ASSERT_FALSE(faults.empty());
+  EXPECT_TRUE(faults[0].what.find("differs from the vertex") != std::string::npos ||
+              faults[0].what.find("holds values that no program wrote") != std::string::npos)
+      << faults[0].what;
+}
+
+/// A record's interval of heights holds those of its ring, on a page that leaves these to the tiles too.
+TEST_P(FloorCheckOf, FindsAHeightBeyondAnInterval) {
+  expect_told("holds values that no program wrote", [](StoredFloor& f) {
     FloorTile& tile = tile_with_heights(f);
-    tile.heights[inner_height(tile)] += 1;
+    tile.heights[inner_height(tile)] += 1U << 20;
   });
 }
 
 TEST_P(FloorCheckOf, FindsAHeightThatIsVoid) {
   for (const bool is_lone : {false, true}) {
-    expect_told("has a height, and there it has none", [=](StoredFloor& f) {
+    // The records of a local page have heights.
+    expect_told("holds values that no program wrote", [=](StoredFloor& f) {
       FloorTile& tile = tile_with_heights(f);
       const std::size_t i = inner_height(tile);
       tile.is_void.resize(tile.samples());
@@ -123,6 +156,20 @@ TEST_P(FloorCheckOf, FindsATileThatDiffersFromItsNeighbour) {
 
 INSTANTIATE_TEST_SUITE_P(Rasters, FloorCheckOf,
                          ::testing::Values("mountains_257.tif", "coast_257.tif"));
+
+TEST(FloorCheck, FindsAnotherHeight) {
+  // A file of T0 alone, whose heights no page gives.
+  const test::TestFolder folder;
+  test::write_small_raster(folder.file("a"));
+  StoredFloor floor = test::floor_of(*StoreFile::open(folder.file("a")));
+  floor.tiles.begin()->second.heights[0] += 1;
+  write_file(folder.file("b"),
+             test::with_floor(read_file(folder.file("a")), test::sections_of(floor)));
+  const HierarchyReport report = Terrain(StoreFile::open(folder.file("b"))).check_hierarchy({});
+  ASSERT_FALSE(report.is_sound());
+  EXPECT_NE(report.faults[0].what.find("has another height there"), std::string::npos)
+      << report.faults[0].what;
+}
 
 TEST(FloorCheck, FindsAVoidThatHasAHeight) {
   // A lone sample that is no longer one, and a void.
