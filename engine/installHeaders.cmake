@@ -25,6 +25,7 @@ set(public_headers
     engine/construct/scratch/workspace.h
     engine/construct/collapse/cost.h
     engine/construct/tile/tile_tree.h
+    engine/crs/base_map.h
     engine/crs/border_move.h
     engine/crs/credits.h
     engine/crs/crs_facts.h
@@ -143,6 +144,7 @@ set(program_headers
     engine/query/shape/clip.h
     engine/query/shape/tiler.h
     engine/utf8.h
+    engine/web_address.h
     storage/file/external_memory.h
     storage/file/external_sorter.h
     storage/file/file_questions.h

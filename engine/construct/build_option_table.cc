@@ -11,6 +11,7 @@
 
 #include "engine/construct/read/class_names.h"
 #include "engine/construct/read/column_names.h"
+#include "engine/crs/base_map.h"
 #include "engine/crs/credits.h"
 #include "engine/error.h"
 
@@ -76,6 +77,10 @@ const char* fault_of_attribution(const BuildOptions& o) {
   return is_credit(o.attribution)
              ? nullptr
              : "an attribution is at most 1,000 bytes of UTF-8 without control characters";
+}
+
+const char* fault_of_base_map(const BuildOptions& o) {
+  return fault_of(BaseMap{o.base_map, o.base_map_attribution});
 }
 
 using Option = BuildOption;
@@ -259,6 +264,20 @@ const std::vector<BuildOption>& table() {
        .value = "TEXT",
        .reads = false,
        .fault = fault_of_attribution},
+      {.name = "base-map",
+       .help =
+           "Tiles of Web Mercator that viewers may lay over the terrain when their users want it, "
+           "as https://tiles.example.org/{z}/{x}/{y}.png, or with {TileMatrix}, {TileCol} and "
+           "{TileRow}",
+       .field = &Options::base_map,
+       .value = "TEMPLATE",
+       .reads = false,
+       .fault = fault_of_base_map},
+      {.name = "base-map-attribution",
+       .help = "Whom to name where the base map is shown; its host without it",
+       .field = &Options::base_map_attribution,
+       .value = "TEXT",
+       .reads = false},
   };
   return kTable;
 }

@@ -45,6 +45,8 @@ struct BuildOptions {
   /// What the terrain is called, and who is to be named where it is shown; "" for none. Metadata alone:
   /// of all other sections the bytes are the same.
   std::string title, attribution;
+  /// As BaseMap::tiles and its attribution; "" for none. Metadata alone, too.
+  std::string base_map, base_map_attribution;
   double void_slope =
       1.0;  ///< Height error charged per ground unit that the border of voids moves.
   /// Rasters: grid units along a leaf of the tile hierarchy; none means TileTree::default_side().

@@ -20,6 +20,10 @@ struct Credits {
 /// Whether a text may be one of Credits: UTF-8 of at most 1,000 bytes without control characters.
 [[nodiscard]] bool is_credit(std::string_view text) noexcept;
 
+/// A text among the options of the build in a store's metadata; empty where there is none. Whether a build writes it is not
+/// looked at.
+[[nodiscard]] std::string text_of_option(const nlohmann::json& metadata, const char* name);
+
 /// Those that the metadata of a store hold (`options.title`, `options.attribution`). What no build
 /// writes, since is_credit() is false of it, counts as none. Never throws for what a file says.
 [[nodiscard]] Credits credits_of(const nlohmann::json& metadata);

@@ -139,7 +139,8 @@ class JsonNames : public ::testing::Test {
 
 TEST_F_IN_RELEASE(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
-  ask({"build", file("dem.tif"), "-o", store, "-q", "--title", "Hills", "--attribution", "Nobody"});
+  ask({"build", file("dem.tif"), "-o", store, "-q", "--title", "Hills", "--attribution", "Nobody",
+       "--base-map", "https://h/{z}/{x}/{y}", "--base-map-attribution", "Somebody"});
   ask({"build", file("dem.tif"), "-o", file("none.ptin"), "-q", "--dry-run"});
   // Warnings of a text and of a raster have a line, a count or neither.
   tools::testing::write_file(file("odd.csv"), "x,y,z [smoot]\n0,0,1\n9,0,2\n0,9,3\n");

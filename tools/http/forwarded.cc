@@ -5,6 +5,8 @@
 #include <cctype>
 #include <optional>
 
+#include "engine/web_address.h"
+
 namespace ptin::http {
 
 namespace {
@@ -21,11 +23,6 @@ std::string lower_letters(std::string_view text) {
   std::string low(text);
   for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return low;
-}
-
-bool is_port(std::string_view text) noexcept {
-  return !text.empty() && text.size() <= 5 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// What stands in a list between separators that are in no quotes.
@@ -93,28 +90,6 @@ void add_standard(const std::string& list, Forwarded& told) {
 }
 
 }  // namespace
-
-bool is_host(std::string_view text) noexcept {
-  if (text.empty() || text.size() > kMostBytesOfPart) return false;
-  std::size_t end = std::min(text.find(':'), text.size());
-  if (text.front() == '[') {
-    end = text.find(']');
-    if (end == std::string_view::npos || end == 1) return false;
-    const std::string_view number = text.substr(1, end - 1);
-    const bool is_number = std::all_of(number.begin(), number.end(), [](char c) {
-      return std::isxdigit(static_cast<unsigned char>(c)) != 0 || c == ':' || c == '.';
-    });
-    if (!is_number) return false;
-    ++end;
-  } else {
-    const std::string_view name = text.substr(0, end);
-    const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.' || c == '_';
-    });
-    if (!is_name) return false;
-  }
-  return end == text.size() || (text[end] == ':' && is_port(text.substr(end + 1)));
-}
 
 bool is_path_prefix(std::string_view text) noexcept {
   if (text.size() > kMostBytesOfPart) return false;

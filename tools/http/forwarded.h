@@ -26,8 +26,6 @@ using Headers = std::vector<std::pair<std::string, std::string>>;  // Names in l
 /// itself: anybody may have written what stands before it.
 [[nodiscard]] Forwarded forwarded_of(const Headers& headers);
 
-/// A host with its port or without.
-[[nodiscard]] bool is_host(std::string_view text) noexcept;
 /// "" or "/terrain", "/a/b": segments of letters, digits, `-`, `_`, `~` and `.`, none of them `.` or `..`.
 [[nodiscard]] bool is_path_prefix(std::string_view text) noexcept;
 

@@ -2,15 +2,18 @@
 //
 // ptin info: what a file holds, without reading its record pages.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/base_map.h"
 #include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "storage/index_shape.h"
@@ -122,6 +125,7 @@ nlohmann::json info_json(const StoreFile& store, const CrsFacts& crs) {
                       {"remote", remote_json(store)},
                       {"metadata", metadata}};
   add_credits(json, credits_of(metadata));
+  add_base_map(json, base_map_of(metadata));
   return json;
 }
 
@@ -149,7 +153,9 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
   for (const auto& [key, value] : object.items()) {
     if (key == "crs" || key == "crs_wkt" || value.is_null()) continue;
     const std::string name = prefix.empty() ? key : prefix + "." + key;
-    if (name == "options.title" || name == "options.attribution") continue;
+    constexpr std::array<std::string_view, 4> kShown = {
+        "options.title", "options.attribution", "options.base_map", "options.base_map_attribution"};
+    if (std::find(kShown.begin(), kShown.end(), name) != kShown.end()) continue;
     if (value.is_object()) {
       print_metadata(value, name);
     } else {
@@ -159,10 +165,13 @@ void print_metadata(const nlohmann::json& object, const std::string& prefix) {
   }
 }
 
-void print_credits(const Credits& credits) {
+void print_credits(const Credits& credits, const BaseMap& map) {
   // Texts that count hold no control characters.
   if (!credits.title.empty()) std::printf("title      %s\n", credits.title.c_str());
   if (!credits.attribution.empty()) std::printf("credit     %s\n", credits.attribution.c_str());
+  if (map.tiles.empty()) return;
+  const std::string whom = map.attribution.empty() ? "" : " (" + map.attribution + ")";
+  std::printf("base map   %s%s\n", map.tiles.c_str(), whom.c_str());
 }
 
 void print_place(const StoreFile& store, const CrsFacts& crs) {
@@ -235,7 +244,7 @@ void print_info(const StoreFile& store, const CrsFacts& crs) {
         "elsewhere  opened by %s in %s, %s\n", counted(cost->remote_requests, "request").c_str(),
         counted(cost->remote_rounds, "round").c_str(), human_bytes(cost->remote_bytes).c_str());
   }
-  print_credits(credits_of(store));
+  print_credits(credits_of(store), base_map_of(store));
   print_place(store, crs);
   print_counts(store);
   print_errors(store);

@@ -76,11 +76,18 @@ serve::ServeOptions options_of(const ServeCommand& command) {
   if (!command.cors.empty()) {
     options.cors_origin = serve::checked_origin(command.cors, "--cors");
   }
-  if (!command.base_map.empty()) options.base_map = {command.base_map, {}};
-  if (!command.base_map_attribution.empty()) {
-    options.base_map.attribution = command.base_map_attribution;
+  if (!command.base_map.empty()) {
+    options.base_map.reset();  // With whom its configuration names for another one.
+    serve::set_base_map_tiles(command.base_map, options);
   }
-  serve::check_base_map(options.base_map);
+  if (!command.base_map_attribution.empty()) {
+    if (!options.base_map) options.base_map.emplace();
+    options.base_map->attribution = command.base_map_attribution;
+  }
+  if (options.base_map) {
+    if (const char* const fault = fault_of(*options.base_map))
+      refuse(fault, options.base_map->tiles);
+  }
   if (!command.metrics.empty()) {
     options.metrics = serve::metrics_for(command.metrics, "--metrics");
   }
@@ -184,10 +191,12 @@ void add_question(ask::Parameters& rows, ServeCommand& command) {
            "Memory of all bodies, questions and answers; as much as fills all threads without it");
   rows.add("limit", &command.limits, "NAME=VALUE", limits_help()).repeated();
   rows.add("cors", &command.cors, "ORIGIN", "Web pages of this origin may ask; * for all");
-  rows.add("base-map", &command.base_map, "TEMPLATE",
-           "Tiles of Web Mercator that the viewer lays over terrains when its user wants them, as "
-           "https://tiles.example.org/{z}/{x}/{y}.png, or with {TileMatrix}, {TileCol} and "
-           "{TileRow}; browsers fetch them, the service does not");
+  rows.add(
+      "base-map", &command.base_map, "TEMPLATE",
+      "Tiles of Web Mercator that the viewer lays over terrains when its user wants them, as "
+      "https://tiles.example.org/{z}/{x}/{y}.png, or with {TileMatrix}, {TileCol} and "
+      "{TileRow}; browsers fetch them, the service does not. Without it those that a file names "
+      "(build --base-map); none: not those either");
   rows.add("base-map-attribution", &command.base_map_attribution, "TEXT",
            "Whom pages name where they show the base map; its host without it");
   rows.add("token-file", &command.token_file, "FILE",

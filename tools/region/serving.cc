@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/crs/base_map.h"
 #include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -119,6 +120,7 @@ std::string metadata_of_stream(const StoreFile& store, const Serving& wanted) {
   metadata["ground"] = json_of(ground_facts_of(crs_facts_of(all)));
   if (metadata.contains("crs") && metadata["crs"].is_object()) metadata["crs"].erase("facts");
   add_credits(metadata, credits_of(all));
+  add_base_map(metadata, base_map_of(all));
   metadata["free_of_voids"] = store.facts().free_of_voids;
   const nlohmann::json options = all.value("options", nlohmann::json::object());
   if (const auto it = options.find("void_slope"); it != options.end()) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/number.h"
+#include "engine/web_address.h"
 #include "tools/http/forwarded.h"
 #include "tools/http/list_header.h"
 #include "tools/http/problem.h"
@@ -131,7 +132,7 @@ std::string address_of(const Asked& asked, std::string_view rest) {
   const std::string& base = asked.request.base;
   const std::string_view host = asked.request.header("host").value_or("");
   // A base with a host leads through the proxy; what is no host must not stand in an address.
-  if (base.find("://") != std::string::npos || !http::is_host(host)) return base + path;
+  if (base.find("://") != std::string::npos || !is_host(host)) return base + path;
   return (asked.request.is_secure ? "https://" : "http://") + std::string(host) + base + path;
 }
 

@@ -73,6 +73,7 @@ Collection::Collection(std::string name, const std::string& path)
       terrain(opened(path)),
       crs(crs_facts(terrain.store())),
       credits(credits_of(terrain.store())),
+      base_map(ptin::base_map_of(terrain.store())),
       ground(ground_of(crs)),
       fingerprint(http::hex_of(terrain.store().fingerprint())) {
   const StoreFacts& facts = terrain.store().facts();
@@ -81,6 +82,10 @@ Collection::Collection(std::string name, const std::string& path)
   bounds = {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
   lon_lat = lon_lat_of(bounds, crs);
   degree_nodes = lon_lat_nodes(bounds, crs);
+}
+
+const BaseMap& base_map_of(const ServeOptions& options, const Collection& collection) noexcept {
+  return options.base_map ? *options.base_map : collection.base_map;
 }
 
 Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn)

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/crs/base_map.h"
 #include "engine/crs/credits.h"
 #include "engine/crs/crs_facts.h"
 #include "engine/crs/ground.h"
@@ -43,6 +44,7 @@ struct Collection {
   Terrain terrain;
   CrsFacts crs;
   Credits credits;
+  BaseMap base_map;  ///< That the file names; base_map_of() says which one counts.
   Ground ground;
   std::string fingerprint;                  ///< A hash of the content, as hexadecimal digits.
   Window bounds{};                          ///< Map units.
@@ -55,6 +57,10 @@ struct Collection {
     return credits.title.empty() ? id : credits.title;
   }
 };
+
+/// The base map that pages may lay over a terrain: that of the service if it has one, or else the file's.
+[[nodiscard]] const BaseMap& base_map_of(const ServeOptions& options,
+                                         const Collection& collection) noexcept;
 
 /// Changes whenever the bytes of any answer may: with the file, and with the program.
 [[nodiscard]] std::string version_of(const Collection& collection, const std::string& program);

@@ -46,9 +46,10 @@ void take_setting(const std::string& name, const std::string& value, const std::
   } else if (name == "cors") {
     options.cors_origin = checked_origin(value, path);
   } else if (name == "base_map") {
-    options.base_map.tiles = value;
+    set_base_map_tiles(value, options);
   } else if (name == "base_map_attribution") {
-    options.base_map.attribution = value;
+    if (!options.base_map) options.base_map.emplace();
+    options.base_map->attribution = value;
   } else if (name == "token_file") {
     options.token = read_token(next_to(path, value));
   } else if (name == "files") {
@@ -91,6 +92,11 @@ void read_config(const std::string& path, ServeOptions& options) {
           path);
     }
   }
+}
+
+void set_base_map_tiles(const std::string& tiles, ServeOptions& options) {
+  if (!options.base_map) options.base_map.emplace();
+  options.base_map->tiles = tiles == "none" ? std::string() : tiles;
 }
 
 std::string checked_origin(const std::string& origin, const std::string& where) {

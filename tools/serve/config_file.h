@@ -10,13 +10,16 @@
 namespace ptin::serve {
 
 /// Reads a configuration into `options`: `listen`, `threads`, `public_url`, `cors`, `base_map`,
-/// `base_map_attribution` (neither is checked: check_base_map()), `token_file`, `files` (true or false),
+/// `base_map_attribution` (neither is checked: fault_of(BaseMap)), `token_file`, `files` (true or false),
 /// `metrics`, `trusted_proxies` (addresses between commas), a table [collections] of NAME = "FILE", where a name
 /// that is no path from the root counts from the folder of the configuration, and a table [limits].
 /// @throws Error not_found, io_error
 ///               invalid_argument  no TOML; a name that means nothing here (named, with those that
 ///                                 do)
 void read_config(const std::string& path, ServeOptions& options);
+
+/// Names the base map of all terrains by its tiles; "none" forbids those that files name. Whom to name for it stays.
+void set_base_map_tiles(const std::string& tiles, ServeOptions& options);
 
 /// The origin of web pages that may ask, as it goes into a header.
 /// @param where  Gave it, for the error.

@@ -180,9 +180,7 @@ http::Response answer_collections(const Asked& asked) {
 http::Response answer_collection(const Asked& asked) {
   Json json = collection_json(*asked.collection, asked.request.base);
   json["limits"] = limits_json(asked.options);
-  const BaseMap& map = asked.options.base_map;
-  if (!map.tiles.empty())
-    json["base_map"] = {{"tiles", map.tiles}, {"attribution", map.attribution}};
+  add_base_map(json, base_map_of(asked.options, *asked.collection));
   return json_response(json, format_of(asked).media);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/web_address.h"
 #include "tools/serve/endpoint.h"
 
 namespace ptin::serve {
@@ -55,7 +56,7 @@ PublicAddress public_address_of(const std::string& url, const std::string& where
     const std::size_t end = std::min(rest.find('/'), rest.size());
     std::string_view prefix = rest.substr(end);
     while (prefix.ends_with('/')) prefix.remove_suffix(1);
-    if (!http::is_host(rest.substr(0, end)) || !http::is_path_prefix(prefix)) break;
+    if (!is_host(rest.substr(0, end)) || !http::is_path_prefix(prefix)) break;
     if (is_taken(prefix)) {
       refuse("the path of the public address begins as one of the service's own, " +
                  std::string(prefix) + "; choose another one, as /terrain/",

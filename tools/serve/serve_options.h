@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/crs/base_map.h"
 #include "tools/http/limits.h"
-#include "tools/serve/base_map.h"
 #include "tools/serve/public_address.h"
 
 namespace ptin::serve {
@@ -51,7 +51,9 @@ struct ServeOptions {
   QuestionLimits question;
   std::uint64_t cache_bytes = std::uint64_t{32} << 20;  ///< Answers that are kept.
   std::string token;                                    ///< Empty: no question needs one.
-  BaseMap base_map;         ///< That pages may lay over terrains, when a user wants it.
+  /// That pages may lay over all terrains, when a user wants it; empty tiles: over none. Without a value
+  /// it is the one that each file names.
+  std::optional<BaseMap> base_map;
   std::string cors_origin;  ///< Origin of pages that may read answers; "*" for all; empty: none.
   bool offers_files = false;
   MetricsFor metrics = MetricsFor::kDefault;

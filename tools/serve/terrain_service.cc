@@ -246,7 +246,10 @@ std::string TerrainService::key_of(const Request& request, const Match& found,
   if (collection != nullptr) key += collection->fingerprint + collection->id;
   // A collection tells them.
   for (const LimitFact& limit : limit_table()) key += " " + std::to_string(limit.get(options_));
-  key += "\n" + options_.base_map.tiles + "\n" + options_.base_map.attribution;
+  if (collection != nullptr) {
+    const BaseMap& map = base_map_of(options_, *collection);
+    key += "\n" + map.tiles + "\n" + map.attribution;
+  }
   key += "\n" + found.rest + "\n" + question.canonical() + "\n" + http::list_of(request, "accept");
   if (found.rest != kTileJson) return key;
   // It tells whole addresses.

@@ -154,7 +154,8 @@ http::Response answer_viewer(const Asked& asked) {
     const auto collection = asked.catalogue.find(asked.question.text("collection"));
     if (collection != nullptr) {
       const Page page = page_of(asked, *collection);
-      const std::string policy = tools::viewer_policy(in_frames, asked.options.base_map.origin());
+      const std::string policy =
+          tools::viewer_policy(in_frames, base_map_of(asked.options, *collection).origin());
       // A browser that has the page keeps the policy that came with it.
       const std::string etag = http::etag_of(page->etag + policy);
       http::Response response = response_of(

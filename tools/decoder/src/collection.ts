@@ -2,7 +2,7 @@
 //
 // A terrain of `ptin serve` by its address, http://host/collections/ID: what it is, and streams of what a receiver lacks.
 import type { Window } from './map_window.js';
-import { textOf } from './metadata.js';
+import { type BaseMap, baseMapOf, textOf } from './metadata.js';
 import type { Serving } from './received.js';
 import { Problem, opened } from './requests.js';
 
@@ -18,15 +18,8 @@ export interface Collection {
   heights: readonly [number, number];
   /** Degrees of a projected CRS; null where its service does not tell. */
   lonLat?: LonLatNodes | null;
-  /** A map of somebody else that pages may lay over the terrain; null: its service names none. */
+  /** A map of somebody else that pages may lay over the terrain; null: neither its service nor its file names one. */
   baseMap?: BaseMap | null;
-}
-
-export interface BaseMap {
-  /** The address of a tile of Web Mercator, with {z}, {x} and {y} or {TileMatrix}, {TileCol} and {TileRow}. */
-  tiles: string;
-  /** The attribution; empty: nobody told. */
-  attribution: string;
 }
 
 /**
@@ -53,16 +46,15 @@ export async function collectionAt(address: string, signal?: AbortSignal): Promi
   const json = await response.json().catch(() => {
     signal?.throwIfAborted();
     throw new Problem('This is no terrain service', `What answered at ${address} is not JSON.`, response.status);
-  }) as { title?: unknown; attribution?: unknown; base_map?: { tiles?: unknown; attribution?: unknown }; limits?: Record<string, number>; terrain?: Partial<Collection> & { lon_lat?: LonLatNodes | null } } | null;
+  }) as { title?: unknown; attribution?: unknown; base_map?: unknown; limits?: Record<string, number>; terrain?: Partial<Collection> & { lon_lat?: LonLatNodes | null } } | null;
   const terrain = json?.terrain;
   if (terrain?.bounds === undefined || terrain.heights === undefined) {
     throw new Problem('This is no terrain service', `What answered at ${address} does not describe a terrain.`, response.status);
   }
-  const tiles = textOf(json?.base_map?.tiles);
   return {
     title: String(json?.title ?? address.split('/').pop()), attribution: textOf(json?.attribution), bounds: terrain.bounds,
     heights: terrain.heights, limits: json?.limits ?? {}, lonLat: terrain.lon_lat ?? null,
-    baseMap: /^https?:/.test(tiles) ? { tiles, attribution: textOf(json?.base_map?.attribution) } : null,
+    baseMap: baseMapOf(json?.base_map),
   };
 }
 

@@ -43,13 +43,13 @@ export async function openBytes(bytes: Bytes, { signal, wasm }: OpenOptions = {}
 
 export { type ByteSource, type Bytes, GivenBytes, HostedBytes } from './byte_source.js';
 export { type Certified, type CertifiedPart, certifiedAt, certifiedOf, certifiedWithin } from './certified.js';
-export { type BaseMap, type Collection, type LonLatNodes, type StreamBody, collectionAt, streamOf } from './collection.js';
+export { type Collection, type LonLatNodes, type StreamBody, collectionAt, streamOf } from './collection.js';
 export { Decoder } from './decoder.js';
 export { type Certificate, type Facts, boundsOf, heightOf, onMap } from './facts.js';
 export { type ModuleSource, loadModule } from './load.js';
 export { type MapPosition, type Window, holds, widened, windowAround } from './map_window.js';
 export { type MeshView, none, triangleWords, vertexWords } from './mesh.js';
-export { type StreamRequest, type Told, type Units, mapCrsOf, toldBy } from './metadata.js';
+export { type BaseMap, type StreamRequest, type Told, type Units, mapCrsOf, toldBy } from './metadata.js';
 export { DecodeError, type ErrorCode, type GroundFacts } from './module.js';
 export { Received, type Serving, type Wanted, mostServings } from './received.js';
 export { Problem, opened } from './requests.js';

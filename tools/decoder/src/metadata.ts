@@ -18,11 +18,21 @@ export interface Units {
   height: string;
 }
 
+/** A map of somebody else that may lie over a terrain. Nothing here asks for its tiles. */
+export interface BaseMap {
+  /** The address of a tile of Web Mercator, with {z}, {x} and {y} or {TileMatrix}, {TileCol} and {TileRow}. */
+  tiles: string;
+  /** The attribution; empty: nobody told. */
+  attribution: string;
+}
+
 /** Facts that the metadata of a stream tell. */
 export interface Told {
   /** The title of the terrain, and its attribution; empty: not told. */
   title: string;
   attribution: string;
+  /** A map that may lie over the terrain; null: not told. */
+  baseMap: BaseMap | null;
   /** The CRS of the map positions as WKT, and of the heights where that is known; null: not told. */
   crs: string | null;
   units: Units;
@@ -55,18 +65,31 @@ export function textOf(value: unknown): string {
   return typeof value === 'string' ? value : '';
 }
 
+/** A base map as services and streams tell it; null where it is none. */
+export function baseMapOf(told: unknown): BaseMap | null {
+  const { tiles, attribution } = (told ?? {}) as { tiles?: unknown; attribution?: unknown };
+  const template = textOf(tiles);
+  const hasPlaces = [/\{z\}|\{TileMatrix\}/, /\{x\}|\{TileCol\}/, /\{y\}|\{TileRow\}/].every((place) => place.test(template));
+  if (!hasPlaces || !/^https?:\/\/[^/{}]+\//.test(template)) return null;
+  try {
+    return new URL(template).host === '' ? null : { tiles: template, attribution: textOf(attribution) };
+  } catch {
+    return null;
+  }
+}
+
 /** The facts that metadata tell; text that is none tells nothing. */
 export function toldBy(metadata: unknown): Told {
   const all = (metadata ?? {}) as {
     crs?: { wkt?: unknown } | null; units?: Partial<Units>; ground?: Partial<GroundFacts>; free_of_voids?: unknown;
-    request?: StreamRequest; title?: unknown; attribution?: unknown;
+    request?: StreamRequest; title?: unknown; attribution?: unknown; base_map?: unknown;
   };
   const g = all.ground;
   const isLength = (value: unknown): value is number => typeof value === 'number' && value > 0 && Number.isFinite(value);
   const known = g !== undefined && isLength(g.semi_major) && isLength(g.metres_per_height) &&
     isLength(g.geographic === true ? g.radians_per_map_unit : g.metres_per_map_unit);
   return {
-    title: textOf(all.title), attribution: textOf(all.attribution),
+    title: textOf(all.title), attribution: textOf(all.attribution), baseMap: baseMapOf(all.base_map),
     crs: typeof all.crs?.wkt === 'string' ? all.crs.wkt : null,
     units: { horizontal: all.units?.horizontal ?? 'unknown', height: all.units?.height ?? 'unknown' },
     ground: !known ? null : {

@@ -3,7 +3,7 @@
 // A terrain whose stream comes from a file: all of it, as far as the error and the number of vertices go. Questions are answered
 // from the mesh that is there, within its certificate: all numbers are the engine's.
 import {
-  type Certified, certifiedAt, certifiedOf, type Decoder, type HostedBytes, type MapPosition, Problem, type Told, toldBy, type Wanted,
+  type BaseMap, type Certified, certifiedAt, certifiedOf, type Decoder, type HostedBytes, type MapPosition, Problem, type Told, toldBy, type Wanted,
 } from 'ptin-decoder';
 import { moduleAt } from './fetching';
 import type { Frame } from './frame';
@@ -18,7 +18,6 @@ export class FileView implements TerrainView {
   /** The stream itself tells whom to name. */
   readonly attribution = '';
   readonly lonLat = null;
-  readonly baseMap = null;
   private readonly still: StaticStream;
   private bytesInAll = 0;
   /** Nothing more comes. */
@@ -37,6 +36,8 @@ export class FileView implements TerrainView {
   ) {
     this.still = new StaticStream(module, { error: 0, mostVertices });
   }
+
+  get baseMap(): BaseMap | null { return this.told.baseMap; }
 
   get decoder(): Decoder { return this.still.decoder; }
 

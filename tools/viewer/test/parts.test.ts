@@ -160,6 +160,15 @@ test('metadata that tell no ground, or nonsense, tell nothing', () => {
   assert.equal(toldBy({ free_of_voids: true }).freeOfVoids, true);
 });
 
+test('a base map is an address of the web with three places', () => {
+  const mapOf = (tiles: unknown): unknown => toldBy({ base_map: { tiles, attribution: 'Who' } }).baseMap;
+  assert.deepEqual(mapOf('https://h/{z}/{x}/{y}'), { tiles: 'https://h/{z}/{x}/{y}', attribution: 'Who' });
+  for (const tiles of ['https://h/{z}/{x}', 'https:///{z}/{x}/{y} ://', 'javascript:{z}{x}{y}', 'https://[/{z}/{x}/{y}', 7, undefined]) {
+    assert.equal(mapOf(tiles), null, String(tiles));
+  }
+  assert.equal(toldBy({ base_map: null }).baseMap, null);
+});
+
 test('what an answer cost, in words', () => {
   const response = new Response(null, { headers: { 'Server-Timing': 'query;dur=28.94;desc="pages=126 stars=0 records=3961"' } });
   assert.equal(costOf(response), '126 pages, 29 ms');

@@ -8,8 +8,9 @@ import type { AddressInfo } from 'node:net';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import type { BrowserContextOptions, Page } from 'playwright-core';
-import { gridded, hill, made, served } from '../../../decoder/test/support';
-import { complete, lastLink, onPage, rested, store, text } from './browser';
+import { host } from '../../../decoder/test/host.mjs';
+import { file, gridded, hill, made, ptin, served } from '../../../decoder/test/support';
+import { complete, lastLink, layOut, onPage, rested, store, text } from './browser';
 
 const screen: BrowserContextOptions = { viewport: { width: 560, height: 400 }, reducedMotion: 'reduce' };
 
@@ -58,8 +59,10 @@ async function withTiles(
 }
 
 interface Mapped {
-  baseMap: { loading: Map<string, unknown>; layers: Map<string, number>; isOver: boolean; grid: { level: number; column: number; row: number } } | null;
-  mapTimer: number;
+  baseMap: {
+    map: { loading: Map<string, unknown>; layers: Map<string, number>; isOver: boolean; grid: { level: number; column: number; row: number } } | null;
+    timer: number;
+  };
 }
 
 /** Waits until all tiles that the picture wants are drawn, or the map is given up. */
@@ -67,8 +70,8 @@ async function mapped(page: Page): Promise<void> {
   for (let times = 0; times < 3;) {
     await rested(page);
     const isStill = await page.evaluate(() => {
-      const { baseMap, mapTimer } = window.ptinViewer as unknown as Mapped;
-      return mapTimer === 0 && baseMap !== null && (baseMap.isOver || (baseMap.loading.size === 0 && baseMap.layers.size > 0));
+      const { map, timer } = (window.ptinViewer as unknown as Mapped).baseMap;
+      return timer === 0 && map !== null && (map.isOver || (map.loading.size === 0 && map.layers.size > 0));
     });
     times = isStill ? times + 1 : 0;
   }
@@ -138,7 +141,7 @@ function isLit(colour: readonly number[], tile: readonly number[]): boolean {
 /** Holds the picture to the tiles that the page has: one that was given may have come when it was not wanted any more. */
 async function compare(page: Page, crs: string): Promise<void> {
   const given = new Set(await page.evaluate(() => {
-    const { layers, grid } = (window.ptinViewer as unknown as Mapped).baseMap!;
+    const { layers, grid } = (window.ptinViewer as unknown as Mapped).baseMap.map!;
     return [...layers.keys()].map((name) => {
       const [up, column, row] = name.split('/').map(Number);
       return `${grid.level + up}/${grid.column * 2 ** up + column}/${grid.row * 2 ** up + row}`;
@@ -196,7 +199,7 @@ for (const { name, crs, at, side, template } of [
       await mapped(page);
       assert.ok(tiles.asked.length > before, 'nearer ground has finer tiles');
       await compare(page, crs);
-      const layers = await page.evaluate(() => (window.ptinViewer as unknown as Mapped).baseMap!.layers.size);
+      const layers = await page.evaluate(() => (window.ptinViewer as unknown as Mapped).baseMap.map!.layers.size);
       assert.ok(layers <= (32 << 20) / (4 * side * side), `${layers} tiles on the card`);
       await page.keyboard.press('1');
       const end = tiles.asked.length;
@@ -207,6 +210,28 @@ for (const { name, crs, at, side, template } of [
     }, { screen }), 0, '--base-map', `${tiles.url}/${template}`, '--base-map-attribution', 'Who made it');
   }, side));
 }
+
+test('a stream on any host brings the map that its file names', () => withTiles(async (tiles) => {
+  const rows = Array.from({ length: 40 }, (_, r) => Array.from({ length: 40 }, (_, c) => hill(r, c).toFixed(1)));
+  gridded('mapped', 'EPSG:4326', [7, 46], 0.001, rows);
+  const [named, stream, folder] = [file('named.ptin'), file('named.ptins'), file('named')];
+  ptin('build', file('mapped.asc'), '--a-srs', 'EPSG:4326', '--base-map', `${tiles.url}/{z}/{x}/{y}.png`, '-q', '-o', named);
+  ptin('stream', named, '-o', stream);
+  layOut(folder, '--stream', stream);
+  const web = await host(folder);
+  try {
+    await onPage(web.url, async (page) => {
+      await complete(page);
+      assert.deepEqual(tiles.asked, []);
+      await page.keyboard.press('4');
+      await mapped(page);
+      assert.ok(tiles.asked.length > 0);
+      assert.match(await text(page, '#attribution'), /Map: 127\.0\.0\.1/);
+    }, { screen });
+  } finally {
+    await web.close();
+  }
+}));
 
 test('what a map lacks is told once, and the terrain stays', () => {
   type Fault = 'none' | 'not for others' | 'not beyond 12';
