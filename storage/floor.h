@@ -99,7 +99,7 @@ class Floor {
   /// @throws Error corruption, io_error
   void announce(std::span<const std::uint64_t> keys, Recent& recent, IoCounters& counters,
                 Coming coming = Coming::kInOrder) const;
-  /// The same, but reads nothing from elsewhere: where nodes are not at hand, they are announced, and the
+  /// Announces without reading anything from elsewhere: where nodes are not at hand, they are announced, and the
   /// tiles below them when this is called again.
   void announce_known(std::span<const std::uint64_t> keys, Recent& recent,
                       IoCounters& counters) const;

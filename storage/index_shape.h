@@ -29,7 +29,7 @@ class IndexShape {
   static constexpr unsigned kNameBits = 16;
 
   IndexShape() = default;
-  /// Of a single segment, as files of format 2 have.
+  /// The shape with a single segment, as files of format 2 have.
   explicit IndexShape(std::uint64_t pages) : IndexShape(std::span(&pages, pages > 0 ? 1 : 0)) {}
   /// @param segments  Pages of each; none has 0.
   explicit IndexShape(std::span<const std::uint64_t> segments) {
@@ -65,7 +65,7 @@ class IndexShape {
   [[nodiscard]] std::uint64_t children(std::uint32_t level) const noexcept {
     return level == 0 ? pages_ : nodes_[level - 1];
   }
-  /// What entry 0 of a node describes. REQUIRES: as position().
+  /// The child that entry 0 of a node describes. REQUIRES: as position().
   [[nodiscard]] std::uint64_t first_child(std::uint32_t level,
                                           std::uint64_t number) const noexcept {
     if (level > 0) {
@@ -81,8 +81,8 @@ class IndexShape {
     return static_cast<std::uint32_t>(
         std::min<std::uint64_t>(end - first_child(level, number), layout::kFanOut));
   }
-  /// What a node says of its place: a leaf its segment, above 32 bits of its number there, so that none
-  /// of another segment shifts it; another node its number.
+  /// The place that a node says of itself: a leaf its segment, above 32 bits of its number there, so that
+  /// none of another segment shifts it; another node its number.
   [[nodiscard]] std::uint64_t name_of(std::uint32_t level, std::uint64_t number) const noexcept {
     if (level > 0) {
       return number;

@@ -22,7 +22,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'T', 'I', 'N',
 /// What a stream begins with (engine/query/stream/stream_format.h): no store, and refused as such.
 inline constexpr std::array<std::uint8_t, 8> kStreamMagic = {0x89, 'P',  'T',  'S',
                                                              0x0D, 0x0A, 0x1A, 0x0A};
-/// What a writer writes. Files of the oldest version that is read have pages of another form.
+/// The version that a writer writes. Files of the oldest version that is read have pages of another form.
 inline constexpr std::uint16_t kMajorVersion = 3;
 inline constexpr std::uint16_t kOldestMajorVersion = 2;
 /// The newest minor version that is known of a major one.

@@ -282,7 +282,7 @@ VertexSplit PagePacker::as_kept(const VertexSplit& r, const Item& item) const {
   return kept;
 }
 
-/// What a column holds of a record.
+/// The number that a column holds of a record.
 std::uint32_t PagePacker::stored(std::size_t column, std::size_t item,
                                  const layout::PageHeader& header) const {
   const std::uint32_t number = items_[item].numbers[column];

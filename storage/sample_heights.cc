@@ -32,7 +32,7 @@ void SampleHeights::announce_known(std::span<const GridBox> boxes) {
   floor_->announce_known(keys_of(boxes), recent_, *counters_);
 }
 
-/// Of the tiles that meet the boxes, ascending.
+/// The keys of the tiles that meet the boxes, ascending.
 std::vector<std::uint64_t> SampleHeights::keys_of(std::span<const GridBox> boxes) const {
   std::vector<std::uint64_t> keys;
   const auto tile = [this](std::int32_t v, std::uint32_t last) {

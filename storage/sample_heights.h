@@ -35,7 +35,7 @@ class SampleHeights {
   /// elsewhere. REQUIRES: use() was called; the boxes are not empty, and within the raster.
   /// @throws Error corruption, io_error
   void announce(std::span<const GridBox> boxes);
-  /// The same, as Floor::announce_known().
+  /// Announces as Floor::announce_known() does.
   void announce_known(std::span<const GridBox> boxes);
 
   /// The ordered height of a sample as the file's vertices have it; 0, which no vertex has, of a void

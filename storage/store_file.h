@@ -158,12 +158,12 @@ class StoreFile {
   void announce(std::span<const PageId> ids, SampleHeights& heights, IoCounters& counters) const;
   /// Announces pages that the directory named: each alone, since few are wanted of many.
   void announce(std::span<const DirectoryPage> pages, IoCounters& counters) const noexcept;
-  /// Of a file that lies elsewhere announces the tiles that have the heights of local pages, by the boxes
-  /// of their stars. @throws Error corruption, io_error  the nodes above tiles are read
+  /// Announces the tiles that have the heights of local pages, by the boxes of their stars; a file that
+  /// does not lie elsewhere needs none. @throws Error corruption, io_error  the nodes above tiles are read
   void announce_heights(std::span<const GridBox> stars, SampleHeights& heights,
                         IoCounters& counters) const;
-  /// The same by small places that fine stars meet, before their pages are known. Where nodes above the
-  /// tiles are not at hand they are announced; so this is called once more when something was read.
+  /// Announces them by small places that fine stars meet, before their pages are known. Where nodes above
+  /// the tiles are not at hand they are announced; so this is called once more when something was read.
   void announce_heights_around(std::span<const GridBox> places, SampleHeights& heights,
                                IoCounters& counters) const;
 

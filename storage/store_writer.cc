@@ -28,7 +28,7 @@ namespace ptin {
 
 namespace {
 
-/// What the journal of an unfinished build writes to NodeEntry::reserved of the last page of a segment.
+/// The mark that the journal of an unfinished build writes to NodeEntry::reserved of the last page of a segment.
 constexpr std::uint32_t kEndsSegment = 1;
 
 constexpr std::uint64_t padded_to(std::uint64_t bytes, std::uint64_t unit) {
@@ -146,7 +146,7 @@ std::vector<layout::SegmentEntry> stored(const std::vector<std::uint64_t>& segme
   return result;
 }
 
-/// The same walk, with the names of pages for their numbers. Borrows both.
+/// A walk over the same pages, with the names of pages for their numbers. Borrows both.
 PageWalk named(const PageWalk& walk, const PageNames& names) {
   return [&](const PageVisitor& visit) {
     walk([&](std::uint64_t page, const layout::NodeEntry& d) { visit(names.of(page), d); });

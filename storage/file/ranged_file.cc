@@ -155,7 +155,7 @@ std::vector<RangedFile::Number> RangedFile::wanted_round(Number first, Number la
     next = announced.begin();
   }
   std::size_t looked_at = numbers.size();
-  // What does not fit is for the next round.
+  // Ranges that do not fit are for the next round.
   const auto take = [&](std::vector<ByteRange>& ranges, std::vector<ByteRange>::iterator from) {
     for (; from != ranges.end() && looked_at < most; ++from) {
       Number number = from->offset / kBlockBytes;

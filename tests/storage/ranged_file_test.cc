@@ -108,7 +108,7 @@ TEST_F(RangedFileTest, TakesWhatIsAlsoNeededAlongWhateverIsReadNext) {
   expect_reads(31 * kBlock, 1);
   EXPECT_EQ(source->rounds,
             (std::vector<NotingSource::Round>{{{30 * kBlock, 2 * kBlock}, {50 * kBlock, kBlock}}}));
-  // Of a question that ended nothing is left.
+  // Nothing is left of a question that ended.
   file->will_also_need({&beside, 1});
   file->check_unchanged();
   expect_reads(100 * kBlock, 1);

@@ -63,7 +63,7 @@ void write_store(const std::string& path, const StoreContent& content,
 /// Records as pages give them back: 0 in the place of -0, and the interval of heights wider where it spans
 /// more than pages tell (tests/support/kept_interval.h).
 [[nodiscard]] StarredRecords as_kept(StarredRecords records, HeightType type);
-/// The same, in the order of one page: errors descend, and those of one error stay as they are.
+/// The records in the order of one page: errors descend, and those of one error stay as they are.
 [[nodiscard]] StarredRecords as_on_page(const StarredRecords& records, HeightType type);
 
 /// The records `order[0]`, `order[1]`, ... with their stars.

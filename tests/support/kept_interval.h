@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What pages keep of a record's interval of heights.
+// The part of a record's interval of heights that pages keep.
 #pragma once
 
 #include <cstdint>

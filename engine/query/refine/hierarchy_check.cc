@@ -39,7 +39,7 @@ struct CellRecord {
   std::uint64_t first_corner;  ///< First corner of its ring, among all of the cell.
 };
 
-/// What the check of a cell takes at most.
+/// The most that the check of a cell takes.
 struct CellLoad {
   std::uint64_t records, bytes;
 };

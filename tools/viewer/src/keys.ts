@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What keys do. The page's list of them (index.html) says the same.
+// The keys and what they do. The page's list of them (index.html) says the same.
 import type { Inquiry } from './inquiry';
 import { part } from './page';
 import type { Panel } from './panel';
@@ -21,7 +21,7 @@ export interface Keyed {
   moved(): void;
 }
 
-/** What each key does, by its name or its letter. */
+/** The action of each key, by its name or its letter. */
 function actionsOf({ view, panel, inquiry, pointing, isServed, isMapThere, savePicture, copyLink }: Keyed): Record<string, () => void> {
   return {
     ArrowLeft: () => { view.pan(-1, 0); },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the pointer points at, or the cross-hair of the keys: its height is told where it rests, and a click asks about it.
+// The place under the pointer, or under the cross-hair of the keys: its height is told where it rests, and a click asks about it.
 import type { Certified } from 'ptin-decoder';
 import { certifiedAt } from 'ptin-decoder/values';
 import type { Frame } from './frame';

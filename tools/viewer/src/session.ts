@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the Worker tells the page of one terrain: what it is, meshes to draw as they come, answers, troubles.
+// Messages of the Worker to the page about one terrain: what it is, meshes to draw as they come, answers, troubles.
 import { type Certified, DecodeError, type Decoder, mapCrsOf, Problem, toldBy } from 'ptin-decoder';
 import { buffersOf, drawnMesh } from './drawn_mesh';
 import { earthOf } from './earth';

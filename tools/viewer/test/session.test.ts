@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the Worker tells the page of a terrain that comes in pieces.
+// Messages of the Worker about a terrain that comes in pieces.
 import { Decoder } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';

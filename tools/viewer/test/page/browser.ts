@@ -110,7 +110,7 @@ async function closed(page: Page): Promise<void> {
   }
 }
 
-/** What comes of something within some minutes; fails after them, since a page whose code never ends answers nothing. */
+/** The outcome of something within some minutes; fails after them, since a page whose code never ends answers nothing. */
 async function within<T>(minutes: number, done: Promise<T>): Promise<T> {
   let timer: NodeJS.Timeout;
   const late = new Promise<never>((_, reject) => {
