@@ -11,7 +11,7 @@
 namespace ptin {
 
 /// The most bytes of a host that counts as one: a name has at most 255 octets (RFC 1035, 2.3.4).
-constexpr std::size_t kMostBytesOfHost = 255;
+inline constexpr std::size_t kMostBytesOfHost = 255;
 
 /// Whether a text is a port's number as it stands in an address.
 [[nodiscard]] inline bool is_port(std::string_view text) noexcept {

@@ -57,8 +57,7 @@ const char* fault_of(const BaseMap& map) noexcept {
                           !origin_of(map.tiles).empty();
   if (!is_address || !(has_places(map.tiles, kXyz) || has_places(map.tiles, kWmts))) {
     return "a base map is an address of tiles: http:// or https://, a host, and either {z}, {x} "
-           "and "
-           "{y} or {TileMatrix}, {TileCol} and {TileRow}, with no other braces, as "
+           "and {y} or {TileMatrix}, {TileCol} and {TileRow}, with no other braces, as "
            "https://tiles.example.org/{z}/{x}/{y}.png";
   }
   return is_credit(map.attribution) ? nullptr

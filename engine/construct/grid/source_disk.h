@@ -7,7 +7,7 @@
 
 namespace ptin {
 
-/// What noise takes in the output, with some room, bytes a vertex: random float64 heights on a grid 44,
+/// Bytes a vertex that noise takes in the output, with some room: random float64 heights on a grid 44,
 /// whole numbers of 30 random bits 23, and 34 where voids are scattered among them; points with six random
 /// digits after the point in each coordinate 94. Ordinary terrains take 14 to 40.
 inline constexpr double kRasterOutputOfVertex = 47.0, kPointOutputOfVertex = 99.0;

@@ -70,7 +70,7 @@ export function baseMapOf(told: unknown): BaseMap | null {
   const { tiles, attribution } = (told ?? {}) as { tiles?: unknown; attribution?: unknown };
   const template = textOf(tiles);
   const hasPlaces = [/\{z\}|\{TileMatrix\}/, /\{x\}|\{TileCol\}/, /\{y\}|\{TileRow\}/].every((place) => place.test(template));
-  if (!hasPlaces || !/^https?:\/\/[^/{}]+\//.test(template)) return null;
+  if (!hasPlaces || !/^https?:\/\/[^/?{}]+[/?]/.test(template)) return null;
   try {
     return new URL(template).host === '' ? null : { tiles: template, attribution: textOf(attribution) };
   } catch {

@@ -163,6 +163,7 @@ test('metadata that tell no ground, or nonsense, tell nothing', () => {
 test('a base map is an address of the web with three places', () => {
   const mapOf = (tiles: unknown): unknown => toldBy({ base_map: { tiles, attribution: 'Who' } }).baseMap;
   assert.deepEqual(mapOf('https://h/{z}/{x}/{y}'), { tiles: 'https://h/{z}/{x}/{y}', attribution: 'Who' });
+  assert.notEqual(mapOf('https://h:1?z={TileMatrix}&x={TileCol}&y={TileRow}'), null, 'the program takes it, too');
   for (const tiles of ['https://h/{z}/{x}', 'https:///{z}/{x}/{y} ://', 'javascript:{z}{x}{y}', 'https://[/{z}/{x}/{y}', 7, undefined]) {
     assert.equal(mapOf(tiles), null, String(tiles));
   }
