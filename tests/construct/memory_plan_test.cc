@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -31,48 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using oracle::ScratchFolder;
-using test::ResourceLimit;
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30;
-
-class DefaultMemory : public ::testing::Test {
- protected:
-  void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "needs a process without the memory of a sanitizer, which is beyond any limit";
-#endif
-  }
-};
-
-TEST_F(DefaultMemory, IsThreeQuartersOfTheSmallestLimit) {
-  const std::uint64_t unlimited = default_memory();  // a cgroup may have a limit already
-  EXPECT_LE(unlimited, kGiB);
-  EXPECT_GT(unlimited, 0U);
-  for (const auto resource : {RLIMIT_DATA, RLIMIT_AS}) {
-    for (const std::uint64_t mib : {400U, 1000U, 1U << 20}) {
-      const ResourceLimit limit(resource, mib * kMiB);
-      ASSERT_TRUE(limit.is_set());
-      EXPECT_EQ(default_memory(), std::min(unlimited, mib * kMiB / 4 * 3)) << resource;
-    }
-  }
-  const ResourceLimit data(RLIMIT_DATA, 700 * kMiB);
-  const ResourceLimit space(RLIMIT_AS, 600 * kMiB);
-  EXPECT_EQ(default_memory(), std::min(unlimited, 450 * kMiB));
-}
-
-TEST_F(DefaultMemory, IsWhatAPlanTakesUnlessItIsToldOtherwise) {
-  const ScratchFolder folder;
-  const TileTree tree(1000, 1000, 256);
-  BuildResources resources;
-  const ResourceLimit limit(RLIMIT_DATA, 800 * kMiB);
-  const auto memory_of = [&] {
-    const MemoryPlan memory = plan_memory(resources.memory_bytes, InputKind::kRaster);
-    return plan_build(tree, {folder.file("a.ptin"), {}, resources, memory, {}, {}}).memory.limit;
-  };
-  EXPECT_EQ(memory_of(), default_memory());
-  resources.memory_bytes = 5 * kGiB;
-  EXPECT_EQ(memory_of(), 5 * kGiB);
-}
 
 RC_GTEST_PROP(ShareMemory, NeverGivesMoreThanThereIs, ()) {
   const std::uint64_t memory = *rc::gen::inRange<std::uint64_t>(1, 16 * kGiB);

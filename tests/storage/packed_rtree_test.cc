@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "storage/packed_rtree.h"
 
-#include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -17,7 +15,6 @@
 #include "storage/sample_heights.h"
 #include "storage/spatialindex_rtree.h"
 #include "tests/storage/store_fixture.h"
-#include "tests/support/share_of_cases.h"
 
 namespace ptin::test {
 namespace {
@@ -144,27 +141,6 @@ TEST(SpatialIndexRTree, IsBuiltOnceAndAgainForAnotherStore) {
   EXPECT_TRUE(SpatialIndexRTree::open(second)->was_built());
   EXPECT_EQ(folder.names(),
             (std::vector<std::string>{"a.ptin", "a.ptin.sidx.dat", "a.ptin.sidx.idx"}));
-}
-
-TEST_IN_RELEASE(SpatialIndexRTree, SortsWithLittleMemoryInTheGivenFolderAndLeavesNothingThere) {
-  const TestFolder folder, scratch;
-  const std::string path = folder.file("a.ptin");
-  RandomRecords options;
-  options.segments = 70;
-  options.records = 6400;
-  options.side = 30000;
-  write_store(path, random_content(options));
-  const auto store = StoreFile::open(path);
-  ASSERT_GT(store->pages().page_count(), 64U * 64U) << "so many that the sorter has to spill";
-  const auto before = std::filesystem::current_path();
-  const auto index = SpatialIndexRTree::open(
-      store, {.base = folder.file("b"), .temporary_folder = scratch.path(), .memory_bytes = 1});
-  EXPECT_EQ(std::filesystem::current_path(), before);
-  EXPECT_TRUE(scratch.names().empty());
-  const FunctionPredicate predicate([](const Attributes& a) {
-    return a.error > 20.0 && meets(a.roi, {100, 100, 5000, 5000});
-  });
-  EXPECT_EQ(search(*index, predicate), search(store->index(), predicate));
 }
 
 TEST(SpatialIndexRTree, AnswersForAStoreWithoutPages) {

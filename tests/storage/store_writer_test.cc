@@ -24,7 +24,6 @@
 #include "storage/verify.h"
 #include "tests/storage/failing_files.h"
 #include "tests/storage/store_fixture.h"
-#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin::test {
@@ -186,17 +185,6 @@ TEST(StoreWriter, TakesAtMost32BytesARecordOfSmallStars) {
   content.segments = {terrain_like(50'000)};
   write_store(folder.file("a"), content);
   EXPECT_LT(std::filesystem::file_size(folder.file("a")), 32U * 50'000U);
-}
-
-TEST_IN_RELEASE(StoreWriter, KeepsALongIndexInASideFile) {
-  const TestFolder folder;
-  RandomRecords options;
-  options.segments = 4;
-  options.records = 40000;  // 2000 pages: 36 leaves, and 16 are kept in memory
-  const StoreContent content = random_content(options);
-  write_store(folder.file("a.ptin"), content);
-  EXPECT_TRUE(verify_store(folder.file("a.ptin")).is_sound());
-  EXPECT_EQ(folder.names(), std::vector<std::string>{"a.ptin"});
 }
 
 TEST(StoreWriter, RefusesAnExistingTargetAndKeepsIt) {

@@ -1,29 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Vertex keys that come twice: found in any pass, as many as were asked for, in one reservation.
+// Vertex keys that come twice: found in any pass, as many as were asked for.
 #include "storage/unique_keys.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include "tests/support/replaced_new.h"
-
-namespace {
-
-std::atomic<std::int64_t> key_allocations{0};
-
-[[maybe_unused]] bool counts_key_allocations() {
-  key_allocations.fetch_add(1, std::memory_order_relaxed);
-  return false;
-}
-
-}  // namespace
 
 namespace ptin {
 namespace {
@@ -111,27 +97,6 @@ TEST(UniqueKeys, TakesAsManyPassesAsItsPartsNeed) {
   EXPECT_EQ(UniqueKeys(kWide, 1'000'000, 1 << 20, 1).passes(), 8U);
   EXPECT_EQ(UniqueKeys(kWide, std::uint64_t{1} << 33, std::uint64_t{1} << 20, 1).passes(), 66561U);
 }
-
-#ifdef PTIN_TEST_ALLOCATES
-// Memory that grows is held twice while it moves.
-TEST(UniqueKeys, ReservesItsPartOnce) {
-  const std::vector<GridPoint> points = spread_points(300'000);
-  const test::AskedAllocations counting(counts_key_allocations);
-  for (const std::uint64_t memory : {1U << 10U, 1U << 20U, 3U << 20U}) {
-    const std::int64_t before = key_allocations;
-    UniqueKeys keys(kWide, points.size(), memory, 100);
-    EXPECT_EQ(key_allocations - before, 1);
-    for (std::uint64_t pass = 0; pass < std::min<std::uint64_t>(keys.passes(), 8); ++pass) {
-      keys.begin(pass);
-      for (const GridPoint p : points) {
-        keys.add(p);
-      }
-      keys.end();
-    }
-    EXPECT_EQ(key_allocations - before, 1) << memory << " bytes";
-  }
-}
-#endif
 
 }  // namespace
 }  // namespace ptin

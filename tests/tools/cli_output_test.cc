@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 #include "tests/tools/program.h"
 #include "tests/tools/refusal.h"
@@ -18,7 +17,6 @@
 namespace ptin::tools {
 namespace {
 
-using test::SmallDisk;
 using testing::expect_refusal;
 using testing::make_raster;
 using testing::Outcome;
@@ -27,35 +25,8 @@ using testing::read_file;
 using testing::run_ptin;
 using testing::small_store;
 using testing::spawn_ptin;
-using testing::test_data;
 using testing::TestFolder;
 using testing::write_file;
-
-TEST(CliBadInput, AnswerThatStdoutDoesNotTake) {
-  const TestFolder folder;
-  const std::string store = small_store(folder);
-  const std::string line = "LINESTRING(500100 3999900, 500700 3999300)";
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"info", store},
-        {"info", store, "--json"},
-        {"locate", store, "500100", "3999900"},
-        {"profile", store, "--line", line},
-        {"profile", store, "--line", line, "-o", "-"},
-        {"sight", store, "500100", "3999900", "2", "500700", "3999300", "2"},
-        {"highest", store},
-        {"volume", store, "--level", "1"},
-        {"isoline", store, "--interval", "1", "-o", "-", "-q"},
-        {"stream", store, "-o", "-"},
-        {"verify", store, "-q", "--json"},
-        {"completion", "bash"},
-        {"--help"},
-        {"--version"}}) {
-    const Outcome outcome = testing::spawn_ptin_into("/dev/full", arguments);
-    EXPECT_EQ(outcome.status, 7) << arguments[0];
-    EXPECT_NE(outcome.err.find("standard output"), std::string::npos)
-        << arguments[0] << outcome.err;
-  }
-}
 
 TEST(CliBadInput, FolderWithoutWritePermission) {
   if (geteuid() == 0) GTEST_SKIP() << "the superuser may write everywhere";
@@ -152,39 +123,6 @@ TEST(CliBadInput, OutputThatLeadsToStandardOutput) {
     expect_refusal(outcome, 2, "leads under /dev or /proc");
     EXPECT_TRUE(std::filesystem::is_symlink(link)) << link;
   }
-}
-
-TEST_IN_RELEASE(CliBadInput, FullDisk) {
-  const TestFolder folder;
-  const SmallDisk disk(folder.file("disk"), 1);
-  if (!disk.is_mounted()) GTEST_SKIP() << SmallDisk::kNeeded;
-  const std::string store = testing::built(folder, "mountains_257.tif");
-  expect_refusal(
-      run_ptin({"build", test_data("mountains_257.tif"), "-o", disk.path() + "/m.ptin", "-q"}), 7,
-      "m.ptin");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
-  for (const char* name :
-       test::some_of({"/a.ply", "/a.obj", "/a.2dm", "/a.glb", "/a.xml", "/a.dxf", "/a.stl"}, 3)) {
-    expect_refusal(run_ptin({"refine", store, "-o", disk.path() + name}), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  for (const char* name :
-       test::some_of({"/a.ply", "/a.xml", "/a.dxf", "/a.stl", "/a.gpkg", "/a.fgb", "/a.tif"}, 3)) {
-    std::vector<std::string> arguments = {"export", store, "-q", "-o", disk.path() + name};
-    if (name == std::string("/a.tif")) arguments.insert(arguments.end(), {"--pixel-size", "8"});
-    expect_refusal(run_ptin(arguments), 7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  for (const char* name :
-       test::some_of({"/a.gpkg", "/a.fgb", "/a.geojson", "/a.shp", "/a.dxf", "/a.xml"}, 3)) {
-    expect_refusal(run_ptin({"isoline", store, "--interval", "5", "-q", "-o", disk.path() + name}),
-                   7, name);
-    EXPECT_TRUE(std::filesystem::is_empty(disk.path())) << name;
-  }
-  expect_refusal(
-      run_ptin({"render", store, "--size", "1400", "1400", "-o", disk.path() + "/a.png", "-q"}), 7,
-      "a.png");
-  EXPECT_TRUE(std::filesystem::is_empty(disk.path()));
 }
 
 TEST(CliSignals, StopABuildTidily) {

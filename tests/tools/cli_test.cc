@@ -4,12 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/share_of_cases.h"
 #include "tests/tools/mesh_reader.h"
 #include "tests/tools/program.h"
 #include "tools/ptin/command.h"
@@ -47,15 +45,6 @@ TEST(Cli, EverySubcommandTakesTheCommonOptions) {
     const std::string help = run_ptin({command.name, "--help"}).out;
     EXPECT_NE(help.find("-q,--quiet"), std::string::npos) << command.name;
     EXPECT_NE(help.find("--json"), std::string::npos) << command.name;
-  }
-}
-
-TEST_IN_RELEASE(Cli, ABuildIsSilentWhereItIsToBeQuiet) {
-  const TestFolder folder;
-  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
-    const Outcome outcome = run_ptin({"build", test_data(name), "-o", folder.file(name), "-q"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.out + outcome.err, "");
   }
 }
 

@@ -1,94 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Terrains without a surface, windows without one, and samples without a triangle: said, not hidden.
-#include <algorithm>
-#include <array>
+#include "tests/tools/no_surface.h"
+
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
 namespace {
 
 using testing::answer_of;
-using testing::expect_done;
+using testing::kNoSurface;
+using testing::NoSurface;
 using testing::Outcome;
 using testing::run_ptin;
 using testing::spawn_ptin_reading;
-using testing::TestFolder;
 
-using Arguments = std::vector<std::string>;
-
-constexpr const char* kNoSurface = "has no surface, all of it is void";
-
-class NoSurface : public ::testing::Test {
- protected:
-  /// Builds a raster of 20 x 20 pixels of 30 m, void but for these pixels; returns what build said.
-  Outcome build(const std::vector<std::array<int, 2>>& pixels, const Arguments& more = {}) {
-    testing::RasterRecipe recipe;
-    recipe.width = recipe.height = 20;
-    recipe.nodata = -9999.0;
-    recipe.value = [&](int column, int row) {
-      const bool has_height =
-          std::find(pixels.begin(), pixels.end(), std::array{column, row}) != pixels.end();
-      return has_height ? 100.0 + column : -9999.0;
-    };
-    testing::make_raster(file("r.tif"), recipe);
-    Arguments words = {"build", file("r.tif"), "-o", store(), "--overwrite"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_ptin(words);
-  }
-  [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
-  [[nodiscard]] std::string store() const { return file("r.ptin"); }
-  /// What stderr says of a command that is done.
-  static std::string warned(const Arguments& words) {
-    const Outcome outcome = run_ptin(words);
-    EXPECT_EQ(outcome.status, 0) << words[0] << outcome.err;
-    return outcome.err;
-  }
-  static bool has(const std::string& text, const std::string& words) {
-    return text.find(words) != std::string::npos;
-  }
-
- private:
-  TestFolder folder_;
-};
-
-TEST_F_IN_RELEASE(NoSurface, BuildAndEveryQuestionWarn) {
-  using Pixels = std::vector<std::array<int, 2>>;
-  for (const Pixels& pixels : test::some_of({Pixels{}, Pixels{{5, 5}}, Pixels{{5, 5}, {12, 9}}})) {
-    const Outcome built = build(pixels);
-    EXPECT_EQ(built.status, 0);
-    EXPECT_TRUE(has(built.err, store() + " " + kNoSurface)) << built.err;
-    EXPECT_TRUE(has(built.err, pixels.empty() ? "no sample of the source has a height"
-                                              : "no sample with a height has a triangle"));
-    EXPECT_TRUE(has(built.err, "--nodata")) << "what to look at";
-    const Arguments questions[] = {
-        {"export", store(), "-o", file("a.tif"), "--overwrite"},
-        {"export", store(), "-o", file("a.ply"), "--overwrite"},
-        {"volume", store(), "--level", "5"},
-        {"render", store(), "-o", file("a.png"), "--overwrite"},
-        {"refine", store(), "-o", file("a.ply"), "--overwrite"},
-        {"highest", store()},
-        {"locate", store(), "500100", "3999800"},
-        {"isoline", store(), "--level", "5", "-o", file("a.gpkg"), "--overwrite"},
-        {"stream", store(), "-o", file("a.pts"), "--overwrite"}};
-    for (Arguments words : questions) {
-      EXPECT_TRUE(has(warned(words), "ptin: warning: " + store() + " " + kNoSurface)) << words[0];
-      words.emplace_back("-q");
-      EXPECT_EQ(warned(words), "") << words[0];
-    }
-  }
-  build({});
-  const Outcome lines = run_ptin({"isoline", store(), "-i", "10", "-o", file("b.gpkg")});
-  EXPECT_EQ(lines.status, 0) << lines.err;
-  EXPECT_TRUE(has(lines.err, "no surface crosses these levels; the layer is empty"));
-}
+using Arguments = testing::NoSurface::Arguments;
 
 TEST_F(NoSurface, OneTriangleIsASurface) {
   const Outcome built = build({{5, 5}, {6, 5}, {5, 6}});

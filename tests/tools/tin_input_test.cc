@@ -2,7 +2,6 @@
 //
 // TINs through the whole program: built, exported, built again; broken ones; real ones.
 #include <array>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@ using testing::expect_done;
 using testing::Outcome;
 using testing::read_file;
 using testing::run_ptin;
-using testing::spawn_ptin;
 using testing::test_data;
 using testing::TestFolder;
 
@@ -59,32 +57,6 @@ TEST(TinInput, IsRefusedWhenBrokenAndRepairedWhenAsked) {
   EXPECT_EQ(several.status, 2);
   EXPECT_NE(several.err.find("build a TIN alone"), std::string::npos) << several.err;
   EXPECT_EQ(run_ptin({"build", folder.file("no.ply"), "-o", folder.file("n.ptin")}).status, 3);
-}
-
-/// The triangles of the file are those of the terrain, however many tiles they are built in.
-TEST(TinInput, IsTheSameTinInAnyTiles) {
-  const TestFolder folder;
-  (void)testing::built(folder, "coast_257.tif", "a.ptin");
-  expect_done({"export", folder.file("a.ptin"), "--error", "2", "-o", folder.file("a.ply"), "-q"});
-  const auto built = [&](const std::string& name, const std::vector<std::string>& options) {
-    std::vector<std::string> all = {"build", folder.file("a.ply"), "-o", folder.file(name), "-q"};
-    all.insert(all.end(), options.begin(), options.end());
-    // A limit on memory counts what a process holds: this one has kept what others freed.
-    const auto outcome = spawn_ptin(all);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    expect_done({"export", folder.file(name), "-o", folder.file(name + ".ply"), "-q"});
-    return read_file(folder.file(name + ".ply"));
-  };
-  const std::string whole = built("whole.ptin", {});
-  EXPECT_TRUE(built("tiles.ptin", {"--tile", "16", "--threads", "1"}) == whole);
-#ifdef __SANITIZE_ADDRESS__  // What it keeps of freed memory counts.
-  const std::string little = "256M";
-#else
-  const std::string little = "128M";
-#endif
-  EXPECT_TRUE(built("again.ptin", {"--tile", "16", "--threads", "2", "--memory", little}) == whole);
-  EXPECT_TRUE(read_file(folder.file("tiles.ptin")) == read_file(folder.file("again.ptin")));
-  expect_done({"verify", folder.file("tiles.ptin"), "--against", folder.file("a.ply"), "-q"});
 }
 
 /// Two strips far apart, one triangle turned over: repaired, the gap is surface unless edges are

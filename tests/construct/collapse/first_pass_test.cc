@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "engine/construct/build.h"
 #include "engine/construct/raster/raster_tile.h"
 #include "engine/mesh/triangle_holds.h"
 #include "engine/mesh/validate.h"
-#include "engine/query/questions.h"
+#include "tests/construct/collapse/first_pass_rasters.h"
 #include "tests/construct/made_raster.h"
 #include "tests/construct/surface_oracle.h"
 #include "tests/support/share_of_cases.h"
@@ -24,43 +22,8 @@ namespace {
 
 using oracle::RasterSpec;
 using oracle::TestTerrain;
-
-double slopes(int x, int y) {
-  return 40.0 * std::sin(0.11 * x) * std::cos(0.07 * y) + 0.5 * x + (x * 7 + y * 13) % 5;
-}
-
-/// Larger than a square of right triangles, and no multiple of it.
-RasterSpec mountains() {
-  RasterSpec spec;
-  spec.name = "mountains";
-  spec.width = 107;
-  spec.height = 83;
-  spec.code = [](int x, int y) { return std::floor(slopes(x, y)); };
-  return spec;
-}
-
-std::vector<RasterSpec> specs() {
-  std::vector<RasterSpec> all(8, mountains());
-  all[1].name = "mountains in fractions";
-  all[1].heights = oracle::kFloat;
-  all[1].code = [](int x, int y) { return static_cast<double>(static_cast<float>(slopes(x, y))); };
-  all[2].name = "holes";
-  all[2].valid = [](int x, int y) {
-    return std::hypot(x - 40, y - 30) > 9 && (x * 31 + y * 17) % 211 != 0;
-  };
-  all[3].name = "a sea";
-  all[3].code = [](int x, int y) { return std::max(12.0, std::floor(slopes(x, y))); };
-  all[4].name = "far from the origin";
-  all[4].origin = {kGridMax - 200, kGridMax - 129};
-  all[5].name = "too small for a square";
-  all[5].width = 33;
-  all[5].height = 32;
-  all[6].name = "a coast of voids";
-  all[6].valid = [](int x, int y) { return x + y / 3 < 60; };
-  all[7].name = "all void";
-  all[7].valid = [](int, int) { return false; };
-  return all;
-}
+using test::mountains;
+using test::specs;
 
 GridBox box_of_samples(const TestTerrain& terrain) {
   return {terrain.samples.front().position.x, terrain.samples.front().position.y,
@@ -258,61 +221,6 @@ TEST(FirstPass, RecordsCoverTheHeightsOfTheirTriangles) {
     }
   }
   EXPECT_GT(held, 1000U);
-}
-
-oracle::RasterFile file_of(const RasterSpec& spec) {
-  oracle::RasterFile file;
-  file.columns = spec.width;
-  file.rows = spec.height;
-  file.step = 1.0;
-  file.nodata = -9999;
-  file.type = spec.heights.type == HeightType::int32 ? GDT_Int32 : GDT_Float32;
-  file.value = [spec](int column, int row) {
-    const int y = spec.height - 1 - row;
-    return spec.valid && !spec.valid(column, y) ? -9999.0 : spec.code(column, y);
-  };
-  return file;
-}
-
-/// Builds with --max-error, tiles of this side, and holds levels against those of all samples.
-void check_build(const RasterSpec& spec, std::int64_t side) {
-  SCOPED_TRACE(spec.name + ", tiles of " + std::to_string(side));
-  const TestTerrain terrain = oracle::make_raster(spec);
-  const oracle::WrittenRaster raster(file_of(spec));
-  const oracle::ScratchFolder folder;
-  BuildOptions options;
-  options.tile = side;
-  const BuildReport whole = build({raster.path()}, folder.file("whole.ptin"), options, {});
-  options.max_error = 4.0;
-  const BuildReport some = build({raster.path()}, folder.file("some.ptin"), options, {});
-  const Terrain tin = Terrain::open(folder.file("some.ptin"));
-  const Terrain all = Terrain::open(folder.file("whole.ptin"));
-  EXPECT_EQ(tin.store().facts().base_error > 0.0, spec.name != "all void");
-  EXPECT_LE(tin.store().facts().base_error, 4.0);
-  for (const double tolerance : {4.0, 9.0, 30.0}) {
-    RefineRequest request;
-    request.detail.tolerance = tolerance;
-    const RefinedTin refined = tin.refine(request);
-    EXPECT_EQ(validate(refined.tin), "");
-    EXPECT_EQ(oracle::check_samples(terrain, refined.tin, tolerance), "");
-    EXPECT_EQ(oracle::check_deviation(terrain, refined.tin, refined.certified_deviation), "");
-    EXPECT_LE(refined.tin.vertices.size(), all.refine(request).tin.vertices.size() * 6 / 5 + 20);
-  }
-  EXPECT_LT(some.records, whole.records);
-}
-
-/// Leaves thin their common sides where squares of right triangles fit them, 64 samples and more;
-/// else they keep all samples of sides, and squares leave a rest in each leaf: 48.
-TEST_IN_RELEASE(FirstPass, ABuildKeepsItsPromisesAndNeedsHardlyMoreVertices) {
-  for (RasterSpec spec : test::some_of(specs())) {
-    spec.origin = {};
-    check_build(spec, 48);
-    if (spec.width > 100) {
-      spec.width = 171;
-      spec.height = 149;
-      check_build(spec, 64);
-    }
-  }
 }
 
 }  // namespace

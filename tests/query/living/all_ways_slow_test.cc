@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Heights, stars and splits of the real rasters that may be shared between clones.
+// Heights, stars and splits of the real rasters that may be shared between clones, and what heights of those of the tree cost.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,12 +9,21 @@
 
 #include "engine/construct/build.h"
 #include "storage/floor.h"
+#include "tests/query/built_terrain.h"
 #include "tests/query/living/all_ways.h"
 #include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
 namespace {
+
+TEST(Heights, AreReadInFewPagesNodesAndRounds) {
+  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
+    SCOPED_TRACE(name);
+    reference::expect_few_reads(reference::built_terrain(name), 2);
+    reference::expect_few_rounds(reference::built_terrain(name), 3);
+  }
+}
 
 TEST(AllWaysOfSharedRasters, AnswerTheSame) {
   const std::string shared = PTIN_SHARED_DATA;

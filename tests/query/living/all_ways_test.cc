@@ -17,7 +17,6 @@
 #include "engine/error.h"
 #include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
-#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
@@ -121,14 +120,6 @@ TEST(AllWays, AnswerTheSameOfRealRasters) {
   for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
     SCOPED_TRACE(name);
     reference::expect_same_by_all_ways(reference::built_terrain(name), {.points = 3000}, 1);
-  }
-}
-
-TEST_IN_RELEASE(Heights, AreReadInFewPagesNodesAndRounds) {
-  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
-    SCOPED_TRACE(name);
-    reference::expect_few_reads(reference::built_terrain(name), 2);
-    reference::expect_few_rounds(reference::built_terrain(name), 3);
   }
 }
 

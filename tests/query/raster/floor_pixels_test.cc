@@ -3,11 +3,9 @@
 // Pixels from the heights of a raster in the file against those from stars.
 #include "engine/query/raster/floor_pixels.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -21,7 +19,6 @@
 #include "engine/query/questions.h"
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
-#include "tests/support/share_of_cases.h"
 #include "tests/support/test_folder.h"
 
 namespace ptin {
@@ -133,25 +130,6 @@ RC_GTEST_PROP(FloorPixels, AreThoseOfStars, (std::uint64_t seed)) {
     request.block_height = 1 + static_cast<std::int64_t>(random() % 70);
     if (random() % 2 == 0) request.limits.memory_bytes = 200'000;
     require_same_answer(floor_gathered(terrain, request), expected);
-  }
-}
-
-TEST_IN_RELEASE(FloorPixels, ReadNoPagesOfStarsWhereTheyAreSamples) {
-  for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
-    const Terrain& terrain = reference::built_terrain(name);
-    ASSERT_NE(terrain.floor(), nullptr);
-    const StoreFacts& facts = terrain.store().facts();
-    RasterRequest request;
-    request.lattice = {facts.map.to_map(0, 256), facts.map.step_x, -facts.map.step_y};
-    request.pixels = {0, 0, 257, 257};
-    std::vector<double> heights(257 * 257);
-    const RasterResult result = terrain.raster(request, heights);
-    EXPECT_EQ(result.cost.io.pages, terrain.floor()->pages()) << name;
-    EXPECT_GE(result.cost.samples_read, 257U * 257U) << name;
-    EXPECT_TRUE(result.exact);
-    Terrain by_stars = terrain;
-    by_stars.use_floor(false);
-    EXPECT_EQ(by_stars.raster(request, heights).surface_pixels, result.surface_pixels) << name;
   }
 }
 

@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 #include <random>
-#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -26,7 +25,6 @@
 #include "tests/query/built_terrain.h"
 #include "tests/query/line_oracle.h"
 #include "tests/query/reference_hierarchy.h"
-#include "tests/support/share_of_cases.h"
 
 namespace ptin {
 namespace {
@@ -217,7 +215,7 @@ RasterRequest whole_request(const Terrain& terrain, double steps) {
 }
 
 TEST(Raster, OfAnyPartIsCutFromTheWhole) {
-  for (const char* name : test::some_of({"coast_257.tif", "ground_points.csv"})) {
+  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
     const Terrain& terrain = reference::built_terrain(name);
     const GridBox& b = terrain.store().facts().bounds;
     const RasterRequest whole = whole_request(terrain, (b.max_x - b.min_x) / 301.7);
@@ -365,30 +363,6 @@ TEST(Raster, RefusesWhatMeansNothing) {
   refused(
       "more than the limit", [](Request& r) { r.limits.memory_bytes = 1000; },
       ErrorCode::resource_exhausted);
-}
-
-TEST_IN_RELEASE(Raster, OfAnySizeIsHandedOverInBlocks) {
-  const Terrain& terrain = reference::built_terrain("mountains_257.tif");
-  // Sizes whose bytes, and twice these, are small numbers when they wrap around.
-  for (const std::int64_t height : {std::int64_t{1} << 30, std::int64_t{1'908'874'354}}) {
-    RasterRequest request = whole_request(terrain, 1);
-    request.pixels.width = std::int64_t{1} << 30;
-    request.pixels.height = height;
-    request.states = height != std::int64_t{1} << 30;
-    request.block_width = request.block_height = 64;
-    std::stop_source stop;
-    request.limits.stop = stop.get_token();
-    const auto first = [&](const RasterBlock& block) {
-      EXPECT_EQ(block.pixels.pixels(), request.block_width * request.block_height);
-      stop.request_stop();
-    };
-    try {
-      static_cast<void>(terrain.raster(request, first));
-      ADD_FAILURE() << "nothing was thrown";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.code(), ErrorCode::cancelled) << e.what();
-    }
-  }
 }
 
 TEST(Raster, LiesOutsideWhereNoTerrainCanBe) {

@@ -3,7 +3,6 @@
 // Moves in which the n-th allocation fails, or it and all behind it: the mesh is one that the
 // promises name, and the next move makes what it would have made anyway.
 #include <atomic>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <new>
@@ -63,12 +62,6 @@ constexpr std::int64_t kAllBehind = std::int64_t{1} << 40;
 
 class MovingWindowFaults : public ::testing::Test {
  protected:
-  void SetUp() override {
-#ifndef PTIN_TEST_ALLOCATES
-    GTEST_SKIP() << "needs a program without a sanitizer, which allocates by itself";
-#endif
-  }
-
   [[nodiscard]] PredicatePtr at(double low, double high) const {
     const MapPoint a = hierarchy_.facts.map.to_map(low, low);
     const MapPoint b = hierarchy_.facts.map.to_map(high, high);

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 
 namespace ptin::tools {
@@ -137,7 +136,7 @@ class JsonNames : public ::testing::Test {
   std::map<std::string, Names> printed;
 };
 
-TEST_F_IN_RELEASE(JsonNames, AreThoseOfTheLists) {
+TEST_F(JsonNames, AreThoseOfTheLists) {
   const std::string store = file("dem.ptin");
   ask({"build", file("dem.tif"), "-o", store, "-q", "--title", "Hills", "--attribution", "Nobody",
        "--base-map", "https://h/{z}/{x}/{y}", "--base-map-attribution", "Somebody"});

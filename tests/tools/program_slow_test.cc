@@ -2,8 +2,6 @@
 //
 // The program that was built, in a process of its own, is the one that the other tests run within
 // theirs.
-#include "tests/tools/program.h"
-
 #include <algorithm>
 #include <iterator>
 #include <sstream>
@@ -11,6 +9,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/tools/program.h"
 
 namespace ptin::tools {
 namespace {
