@@ -263,7 +263,7 @@ TEST_P(ReplacedStore, IsNoticedThroughAMapping) {
 }
 
 TEST_P(ReplacedStore, IsNoticedByReads) {
-  for (const FileChange& change : test::some_of(changes())) {
+  for (const FileChange& change : test::some_of(changes(), 2, 1)) {
     expect_noticed(change, PageAccess::kPread, false);
     expect_noticed(change, PageAccess::kPread, true);
   }

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/range_server.h"
-#include "tests/support/share_of_cases.h"
 #include "tests/tools/program.h"
 #include "tests/tools/serve_fixture.h"
 
@@ -104,7 +103,7 @@ TEST_F(RemoteTest, AnswersEachQuestionAsALocalFileDoes) {
       {{"stream", "--error", "20"}, ".ptins"},
   };
   int number = 0;
-  for (const Question& q : test::some_of(questions)) {
+  for (const Question& q : questions) {
     std::vector<nlohmann::json> answers;
     std::vector<std::string> outputs;
     for (const std::string& file : {local_, url("plain")}) {

@@ -36,7 +36,7 @@ Side<SidePoint> side_of(const ReadTerrain& tile, const std::vector<std::uint32_t
 
 TEST(TerrainTiles, NeighboursHaveEqualEdges) {
   const TestFolder folder;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 2)) {
     std::size_t points = 0, shared = 0;
     const Tiled tiled(path);
     const nlohmann::json layer = tiled.tiles.layer_json("1");

@@ -20,7 +20,7 @@ namespace {
 
 TEST(TerrainTiles, AreThereWhereLayerJsonSays) {
   const TestFolder folder;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 1)) {
     const Tiled tiled(path);
     EXPECT_EQ(tiled.tiles.pyramid().looked_at(), tiled.finest())
         << "of a small terrain all is known";

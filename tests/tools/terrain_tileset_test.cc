@@ -39,7 +39,7 @@ std::map<std::tuple<int, std::int64_t, std::int64_t>, ReadGlb> contents_of(
 TEST(TerrainTileset, NeighboursHaveEqualEdges) {
   const TestFolder folder;
   std::size_t points = 0;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 0)) {
     const Tiled tiled(path);
     const TerrainTileset tileset(tiled.terrain, tiled.crs, {}, limits_of());
     const TileGrid& grid = tileset.pyramid().grid();
@@ -85,7 +85,7 @@ TEST(TerrainTileset, NeighboursHaveEqualEdges) {
 
 TEST(TerrainTileset, LiesWithinItsGeometricErrors) {
   const TestFolder folder;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 1)) {
     const Tiled tiled(path);
     const TerrainTileset tileset(tiled.terrain, tiled.crs, {}, limits_of());
     const nlohmann::json told = tileset.tileset_json();
@@ -133,7 +133,7 @@ std::vector<Ecef> places_in(const ReadGlb& glb) {
 TEST(TerrainTileset, RegionsHoldTheContents) {
   const TestFolder folder;
   std::size_t places = 0;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 2)) {
     const Tiled tiled(path);
     const TerrainTileset tileset(tiled.terrain, tiled.crs, {}, limits_of());
     const auto [west, south, east, north, low, high] = region_of(tileset.tileset_json().at("root"));
@@ -167,7 +167,7 @@ TEST(TerrainTileset, RegionsHoldTheContents) {
 TEST(TerrainTileset, SubtreesTellWhichContentsThereAre) {
   const TestFolder folder;
   constexpr int kLevels = TerrainTileset::kSubtreeLevels;
-  for (const std::string& path : tiled_terrains(folder)) {
+  for (const std::string& path : tiled_terrains(folder, 0)) {
     const Tiled tiled(path);
     const TerrainTileset tileset(tiled.terrain, tiled.crs, {}, limits_of());
     const nlohmann::json told = tileset.tileset_json();

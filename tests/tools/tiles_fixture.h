@@ -86,8 +86,10 @@ struct TileNumber {
 [[nodiscard]] std::string built_wide(const TestFolder& folder);
 /// Hills in polar stereographic coordinates, across the meridian of 180 degrees at 75 degrees north.
 [[nodiscard]] std::string built_arctic(const TestFolder& folder);
-/// All of these, and two real ones; under the sanitizers some (tests/support/share_of_cases.h).
-[[nodiscard]] std::vector<std::string> tiled_terrains(const TestFolder& folder);
+/// All of these, and two real ones; under the sanitizers each third up to so many before the last
+/// (tests/support/share_of_cases.h).
+[[nodiscard]] std::vector<std::string> tiled_terrains(const TestFolder& folder,
+                                                      std::size_t before_last);
 
 /// One side of a tile, as the neighbour sees it: its vertices, each by a place along the side and
 /// by all that must be equal, and the edges of triangles that run along it.

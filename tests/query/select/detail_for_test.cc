@@ -77,7 +77,7 @@ TEST(DetailFor, KeepsAsManyVerticesOfAWholeTerrainAsItMay) {
 
 /// A coast: one part of it is flat, and another is not there. Even density would be off by ten.
 TEST(DetailFor, WeighsWindowsByWhatIsInThem) {
-  for (const char* name : test::some_of({"mountains_257.tif", "coast_257.tif"})) {
+  for (const char* name : {"mountains_257.tif", "coast_257.tif"}) {
     const Terrain& terrain = reference::built_terrain(name);
     const Window all = window_of(terrain.store().facts());
     std::mt19937_64 random(5);

@@ -223,7 +223,7 @@ MapPoint at(const OpenedTerrain& terrain, double x, double y) {
 TEST(Volume, IsTheSameForAnyMemoryTilesAndThreads) {
   const Terrain& coast = reference::built_terrain("coast_257.tif");
   const Terrain& rough = reference::built_terrain("coast_257.tif", 2.0);
-  for (const OpenedTerrain* other : test::some_of<const OpenedTerrain*>({nullptr, &rough})) {
+  for (const OpenedTerrain* other : std::initializer_list<const OpenedTerrain*>{nullptr, &rough}) {
     VolumeRequest request = built_request(coast);
     request.other = other;
     request.detail.tolerance = 1.0;
@@ -369,7 +369,7 @@ TEST(Volume, AtAnErrorHoldsThatOfTheFullTinWithVoids) {
 
 TEST(Volume, IsBoundedAtAnyLevelOfDetail) {
   std::mt19937_64 random(5);
-  for (const char* name : test::some_of({"coast_257.tif", "ground_points.csv"})) {
+  for (const char* name : {"coast_257.tif", "ground_points.csv"}) {
     SCOPED_TRACE(name);
     const Terrain& terrain = reference::built_terrain(name);
     for (int round = 0; round < 4; ++round) {
@@ -396,7 +396,7 @@ TEST(Volume, IsBoundedAtAnyLevelOfDetail) {
 TEST(Volume, IsBoundedInSmallWindows) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0.0, 0.97), size(0.004, 0.03);
-  for (const char* name : test::some_of({"coast_257.tif", "mountains_257.tif"})) {
+  for (const char* name : {"coast_257.tif", "mountains_257.tif"}) {
     SCOPED_TRACE(name);
     const Terrain& terrain = reference::built_terrain(name);
     VolumeRequest request = built_request(terrain);
