@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Certificates over a hundred thousand random points and as many random lines of sight (a third,
+// Certificates over a hundred thousand random points and as many random lines of sight (a sixth,
 // where not all are asked for) on real terrains: what is told at an error, or of a file that left detail out, is never wrong.
 #include <cmath>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace {
 #ifdef __SANITIZE_ADDRESS__
 constexpr int kCases = 2000;  // sanitizers are slow
 #else
-const int kCases = 100'000 / test::share_of_cases(3);
+const int kCases = 100'000 / test::share_of_cases(6);
 #endif
 constexpr double kRounding = 1e-9;  ///< Of heights of some thousand metres.
 

@@ -20,16 +20,15 @@ TEST(StoreFile, GivesBackWhatWasWritten) {
       const StoreContent content = random_content(options);
       const std::string path = folder.file("a.ptin");
       write_store(path, content, {.overwrite = true});
+      const StarredRecords expected =
+          sorted_by_key(as_kept(content.all_records(), content.facts.heights.type));
       for (const PageAccess access : {PageAccess::kMapped, PageAccess::kPread}) {
         const auto store = StoreFile::open(path, access);
         EXPECT_EQ(store->facts(), content.facts);
         EXPECT_EQ(store->metadata_json(), content.metadata);
         EXPECT_EQ(store->record_count(), 2 * records);
         const StarredRecords found = read_all_starred(*store);
-        EXPECT_TRUE(
-            are_same(sorted_by_key(found),
-                     sorted_by_key(as_kept(content.all_records(), content.facts.heights.type))))
-            << records;
+        EXPECT_TRUE(are_same(sorted_by_key(found), expected)) << records;
         EXPECT_EQ(read_all(*store), found.splits);
       }
     }

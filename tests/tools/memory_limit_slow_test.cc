@@ -56,9 +56,9 @@ class MemoryLimitSlow : public ::testing::Test {
   }
 };
 
-void make_hills(const TestFolder& folder) {
+void make_hills(const TestFolder& folder, int side = 1500) {
   testing::RasterRecipe recipe;
-  recipe.width = recipe.height = 1500;
+  recipe.width = recipe.height = side;
   recipe.value = [](int x, int y) { return testing::hills(x, y) + (x * 31 + y * 17) % 23; };
   testing::make_raster(folder.file("dem.tif"), recipe);
 }
@@ -123,15 +123,18 @@ TEST_F(MemoryLimitSlow, ATinKeepsWithinItsMemoryToo) {
   }
 }
 
-/// Whole it would take some 700 MB.
+/// Whole it would take some 300 MB, and is refused.
 TEST_F(MemoryLimitSlow, AStreamKeepsWithinItsMemoryAndIsTheSame) {
   const TestFolder folder;
-  make_hills(folder);
+  make_hills(folder, 1000);
   const std::string store = folder.file("t.ptin");
   ASSERT_EQ(spawn_ptin({"build", folder.file("dem.tif"), "-o", store, "-q"}).status, 0);
   ASSERT_EQ(spawn_ptin({"stream", store, "-o", folder.file("whole.pts")}).status, 0);
   constexpr rlim_t kMemory = 64;
   const DataLimit limit(kMemory * kMiB + kMargin);
+  const auto refused =
+      spawn_ptin({"stream", store, "-o", folder.file("none.pts"), "--memory", "2G"});
+  EXPECT_EQ(refused.status, 7) << "it is too small to be seen to keep within its memory";
   const auto outcome = spawn_ptin({"stream", store, "-o", folder.file("parts.pts"), "--threads",
                                    "2", "--memory", std::to_string(kMemory) + "M"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/share_of_cases.h"
 #include "tests/tools/serve_fixture.h"
 
 namespace ptin::tools::testing {
@@ -138,7 +139,8 @@ TEST(ServeFiles, AnswersFromOneFileOrTheOtherWhileTheyChangePlaces) {
   });
   std::string second;
   int strange = 0;
-  for (int i = 0; i < 300 || (second.empty() && i < 100000); ++i) {
+  const int times = 300 / test::share_of_cases(3);
+  for (int i = 0; i < times || (second.empty() && i < 100000); ++i) {
     const HttpAnswer answer = served.get(kHighest);
     if (answer.status != 200) ++strange;
     if (answer.body == first) continue;
