@@ -123,7 +123,7 @@ TEST(ServeSmall, SendsShorterPiecesWhereMemoryIsShort) {
   }
 }
 
-/// The mesh that is held and the one that is sent are there together: 280 bytes a vertex.
+/// The mesh that is held and the one that is sent are there together: 210 bytes a vertex.
 TEST(ServeSmall, SendsPiecesUntilMemoryIsFull) {
   TestFolder folder;
   serve::ServeOptions options = serve_options(folder);
@@ -140,6 +140,29 @@ TEST(ServeSmall, SendsPiecesUntilMemoryIsFull) {
     error = json::parse(answer.header("ptin-certified-error")).get<double>();
   }
   EXPECT_EQ(error, 0.0);
+}
+
+/// What it tells of itself is what it keeps to, and no less than that.
+TEST(ServeSmall, GoesOnFromAsManyVerticesAsItTells) {
+  TestFolder folder;
+  serve::ServeOptions options = serve_options(folder);
+  options.question.question_memory = 8 << 20;
+  ServedTerrains served(options);
+  const std::string mountains = "/collections/mountains";
+  const auto told = served.get(mountains).json()["limits"]["held_vertices"].get<std::size_t>();
+  json have = json::array();
+  std::size_t held = 0;
+  HttpAnswer answer = served.post(mountains + "/stream", {{"have", have}});
+  for (; answer.status == 200; answer = served.post(mountains + "/stream", {{"have", have}})) {
+    const json splits = json::parse(answer.header("ptin-splits"));
+    ASSERT_GT(splits, 0) << "all of the terrain fits: the memory is too large for this test";
+    have.push_back({{"splits", splits}});
+    held += splits.get<std::size_t>();
+  }
+  EXPECT_EQ(answer.status, 413);
+  EXPECT_EQ(answer.json()["limit"], "question_memory");
+  EXPECT_GT(held, told);
+  EXPECT_LT(held, told + told / 10);
 }
 
 TEST_F(Serve, RefusesWhatAReceiverHadOfAnotherFile) {

@@ -108,7 +108,7 @@ ask::LongText long_text(const Asked& asked) {
 
 QueryLimits engine_limits(const Asked& asked, std::uint64_t answer_bytes) {
   QueryLimits limits = asked.limits;
-  limits.memory_bytes -= std::min<std::uint64_t>(limits.memory_bytes / 2, answer_bytes);
+  limits.memory_bytes = engine_memory(limits.memory_bytes, answer_bytes);
   return limits;
 }
 

@@ -3,6 +3,7 @@
 // What the answers of the service have in common.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -67,8 +68,12 @@ template <typename Values>
 [[nodiscard]] ask::LongText long_text(const Asked& asked);
 /// Memory that the answer takes for each position, vertex or elevation that it tells of, at most.
 constexpr std::uint64_t kAnswerBytesOfPlace = 1536;
-/// The limits of the engine beside an answer of so many bytes, for which half of the memory is kept at
-/// most; without a number, half.
+/// The memory that the engine has beside an answer of so many bytes, for which half is kept at most.
+constexpr std::uint64_t engine_memory(std::uint64_t memory_bytes,
+                                      std::uint64_t answer_bytes) noexcept {
+  return memory_bytes - std::min(memory_bytes / 2, answer_bytes);
+}
+/// The limits of the engine beside an answer of so many bytes; without a number, with half of the memory.
 [[nodiscard]] QueryLimits engine_limits(
     const Asked& asked, std::uint64_t answer_bytes = std::numeric_limits<std::uint64_t>::max());
 

@@ -123,6 +123,7 @@ Json limits_json(const ServeOptions& options) {
       if (limit.name == name) limits[name] = limit.get(options);
     }
   }
+  limits["held_vertices"] = most_held_vertices(options.question);
   return limits;
 }
 

@@ -25,6 +25,10 @@ void refuse_elevation(http::Response& refusal);
 Answer answer_viewer, answer_landing, answer_conformance, answer_api, answer_collections,
     answer_collection, answer_style, answer_thumbnail;
 
+/// The most vertices that a receiver may have for a stream to go on: `held_vertices`, or as many as
+/// `question_memory` holds beside an answer of `stream_bytes`.
+[[nodiscard]] std::uint64_t most_held_vertices(const QuestionLimits& limits);
+
 /// A service of these questions as OpenAPI 3.0.
 /// @param base  As of http::Request.
 [[nodiscard]] ask::Json openapi(std::span<const Endpoint> all, const ServeOptions& options,

@@ -74,6 +74,12 @@ std::vector<StreamHeld> held_of(const Asked& asked) {
   return held;
 }
 
+/// A piece may end on any frame, where that is worth the work.
+constexpr std::uint64_t kFewestSplits = 1024;
+
+/// What a piece of so many bytes takes: while it grows, the text is there twice.
+constexpr std::uint64_t bytes_of_text(std::uint64_t piece) { return 2 * piece; }
+
 std::uint64_t most_bytes(const Asked& asked, const PieceQuestion& question) {
   const QuestionLimits& limits = asked.options.question;
   const std::uint64_t asked_for = question.max_bytes.value_or(limits.stream_bytes);
@@ -82,6 +88,12 @@ std::uint64_t most_bytes(const Asked& asked, const PieceQuestion& question) {
 }
 
 }  // namespace
+
+std::uint64_t most_held_vertices(const QuestionLimits& limits) {
+  const std::uint64_t left =
+      engine_memory(limits.question_memory, bytes_of_text(limits.stream_bytes));
+  return std::min<std::uint64_t>(limits.held_vertices, most_held_within(left, kFewestSplits));
+}
 
 ask::Parameters stream_parameters() { return described<PieceQuestion>(); }
 
@@ -93,9 +105,8 @@ http::Response answer_stream(const Asked& asked) {
   request.wanted = tools::predicate_of(wanted, asked.facts(), "window");
   request.tolerance = wanted.error;
   request.held = held_of(asked);
-  request.limits = engine_limits(asked, 2 * most);  // While it grows, the text is there twice.
-  // A piece may end on any frame, where that is worth the work.
-  request.fewest_splits = 1024;
+  request.limits = engine_limits(asked, bytes_of_text(most));
+  request.fewest_splits = kFewestSplits;
   // No more than so many bytes hold and so much memory takes: those behind the cut are not looked for.
   constexpr std::uint64_t kMemoryOfSplit = 512;
   request.most_splits =

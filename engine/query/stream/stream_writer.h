@@ -92,4 +92,9 @@ using ByteSink = std::function<void(std::span<const std::byte>)>;
 StreamSummary write_stream(const OpenedTerrain& terrain, const StreamRequest& request,
                            const ByteSink& sink);
 
+/// The most vertices that a receiver may have for a piece of `splits` more to fit so much memory, where
+/// there is no folder for temporary files: for those who tell it before they are asked. Cost: none.
+[[nodiscard]] std::uint64_t most_held_within(std::uint64_t memory_bytes,
+                                             std::uint64_t splits) noexcept;
+
 }  // namespace ptin

@@ -20,14 +20,21 @@ namespace {
 /// The cell that is the whole grid.
 constexpr GridCell kAll{0, 0, 31};
 
-/// The most splits that can be sent in so much memory.
-std::uint64_t splits_within(std::uint64_t held, std::uint64_t memory_bytes) noexcept {
+/// The largest number that fits, where all smaller ones do, too; 0: none does.
+template <class Fits>
+std::uint64_t largest_that(const Fits& fits) noexcept {
   std::uint64_t fit = 0, too_many = std::uint64_t{1} << 32;
   while (too_many - fit > 1) {
     const std::uint64_t middle = fit + (too_many - fit) / 2;
-    (bytes_of_sending(held, middle) <= memory_bytes ? fit : too_many) = middle;
+    (fits(middle) ? fit : too_many) = middle;
   }
   return fit;
+}
+
+/// The most splits that can be sent in so much memory.
+std::uint64_t splits_within(std::uint64_t held, std::uint64_t memory_bytes) noexcept {
+  return largest_that(
+      [&](std::uint64_t splits) { return bytes_of_sending(held, splits) <= memory_bytes; });
 }
 
 /// Keeps the first splits of the total order.
@@ -197,6 +204,11 @@ void WholeStream::cut(const std::vector<PendingSplit>& splits) {
 std::uint64_t bytes_of_sending(std::uint64_t base_vertices, std::uint64_t splits) noexcept {
   const std::uint64_t frame = FrameCuts::most_of_frame(base_vertices, splits);
   return CellCoder::bytes_of(base_vertices, splits) + FrameCoder::bytes_of(frame);
+}
+
+std::uint64_t most_held_within(std::uint64_t memory_bytes, std::uint64_t splits) noexcept {
+  return largest_that(
+      [&](std::uint64_t held) { return bytes_of_sending(held, splits) <= memory_bytes; });
 }
 
 std::unique_ptr<StreamFrames> whole_stream(const OpenedTerrain& terrain,
