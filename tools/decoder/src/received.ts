@@ -99,8 +99,9 @@ export class Received {
     // Even of one whose beginning broke off some bytes were taken.
     if (!isComplete) decoder.beginNext();
     if (coming === null || certificate === null) return;
-    // A piece that the service cut is complete, too: of full detail the last one is empty.
-    if (isComplete && (splits === 0 || (error > 0 && certificate.error <= error))) this.whole.push({ window, error });
+    // All is there down to the error that is certified, of a piece that was cut, too. Details of no error may lack until nothing comes.
+    const isAll = isComplete && splits === 0;
+    this.whole.push({ window, error: isAll ? Math.min(error, certificate.error) : Math.max(certificate.error, Number.MIN_VALUE) });
     this.parts.push({ window: coming, ...certificate });
     this.have.push({ ...asked({ window, error }), splits });
   }

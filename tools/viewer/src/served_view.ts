@@ -4,7 +4,7 @@
 // it, so only what is missing travels. Detail that is no longer looked at goes away when there is too much of it: then the view
 // is fetched anew into a second decoder, which takes the place of the first once it has caught up.
 import {
-  type BaseMap, type Certified, certifiedAt, type Collection, DecodeError, type Decoder, type LonLatNodes, mostServings, Problem, Received, type Wanted, widened,
+  type BaseMap, type Certified, certifiedAt, type Collection, DecodeError, type Decoder, type LonLatNodes, mostServings, Problem, Received, type Wanted, widened, type Window,
 } from 'ptin-decoder';
 import { rounded } from './format';
 import type { Frame } from './frame';
@@ -12,18 +12,19 @@ import type { Answer, Progress, Question } from './messages';
 import { measuredInPlan } from './plan';
 import { type Service, costOf, millisecondsOf } from './service';
 import type { TerrainView, ViewEvents } from './terrain_view';
+import { VertexBudget } from './vertex_budget';
 
 const firstBytes = 64 * 1024;
 const laterBytes = 256 * 1024;
 const leastBytes = 32 * 1024;
-/** Memory of a question for each vertex that is held and sent, measured: 580. */
-const bytesOfVertex = 700;
 /** The share of the time that the service computes which an answer should take; what it may then differ is left. */
 const shareOfTime = 0.15;
 /** Times finer than what is there that one answer may be, and least, so that there is an end. */
 const mostFiner = 5, leastFiner = 1.4;
 /** Milliseconds before a service that failed is asked again. */
 const firstWait = 1000, longestWait = 20000;
+/** Parts are about as fine as one another, measured by what is wanted of each, up to this factor. */
+const mostUneven = 4;
 
 export class ServedView implements TerrainView {
   private shown: Received;
@@ -33,12 +34,12 @@ export class ServedView implements TerrainView {
   private leastError = 0;
   /** Errors are this many times those of the camera, where the vertices would be too many. */
   private coarser = 1;
-  private isLean = true;
+  /** The parts that were looked at when the receiver began; null: what it holds is not looked at any more. */
+  private lookedAt: Window[] | null;
+  private readonly budget: VertexBudget;
   private wake: (() => void) | null = null;
   /** Bytes of the next answer: less where the service has not the memory for more. */
   private mostBytes = laterBytes;
-  /** Vertices that the service found too many, nearly. */
-  private mostHeld = Infinity;
   /** The service has not the memory for all that is wanted. */
   private isTooMuch = false;
   private bytes = 0;
@@ -52,11 +53,11 @@ export class ServedView implements TerrainView {
 
   constructor(
     private readonly service: Service, private readonly collection: Collection, private readonly module: WebAssembly.Module,
-    private readonly mostVertices: number, private readonly events: ViewEvents,
+    mostVertices: number, private readonly events: ViewEvents,
   ) {
     this.shown = this.received = new Received(module);
-    const { question_memory: memory = Infinity, held_vertices: held = Infinity } = collection.limits ?? {};
-    this.mostHeld = Math.min(0.9 * held, memory / bytesOfVertex);
+    this.budget = new VertexBudget(mostVertices, collection.limits?.held_vertices ?? Infinity);
+    this.lookedAt = [collection.bounds];
   }
 
   get name(): string { return this.collection.title; }
@@ -66,8 +67,7 @@ export class ServedView implements TerrainView {
   get decoder(): Decoder { return this.shown.decoder; }
   get certified(): Certified { return this.shown.certified; }
   get progress(): Progress {
-    const isService = this.isTooMuch || this.mostHeld < this.mostVertices;
-    const heldBy = this.isTooMuch || this.coarser > 1 ? (isService ? 'service' : 'vertices') : undefined;
+    const heldBy = this.isTooMuch ? 'service' : this.coarser > 1 ? this.budget.heldBy : undefined;
     return {
       bytes: this.bytes, bytesInAll: 0, heldBy, waitsFor: this.waitsFor, cost: this.cost,
       state: heldBy !== undefined ? 'held' : this.isLoading ? 'loading' : 'complete',
@@ -84,10 +84,11 @@ export class ServedView implements TerrainView {
   setView(wanted: Wanted[]): void {
     // A window that sticks out by the last bit of a number would never be covered.
     this.wanted = wanted.map((w) => ({ window: widened(w.window, this.collection.bounds, 0), error: w.error }));
-    this.isLean = false;
+    const windows = this.wanted.map((w) => w.window);
+    if (this.lookedAt?.some((window) => shareOf(window, windows) < 0.5) ?? false) this.lookedAt = null;
     this.isTooMuch = false;
     this.mostBytes = laterBytes;
-    this.coarser = Math.max(1, this.coarser * 0.8);
+    if (!this.isLean) this.coarser = Math.max(1, this.coarser * 0.8);
     this.wake?.();
   }
 
@@ -98,10 +99,11 @@ export class ServedView implements TerrainView {
       if (this.isTooMuch && first.error < this.relief) first.error *= 2;
     }
     for (;;) {
+      if (this.nextWanted() !== undefined && this.budget.isFull(this.held)) this.makeDo();
       const next = this.nextWanted();
       if (next !== undefined) {
         this.isLoading = true;
-        await this.bring(next, this.mostBytes);
+        await this.bring(next, this.budget.bytesBeside(this.held, this.mostBytes));
         continue;
       }
       this.shown = this.received;
@@ -122,10 +124,30 @@ export class ServedView implements TerrainView {
     }
   }
 
+  /** Vertices of the receiver. */
+  private get held(): number {
+    const { decoder } = this.received;
+    return decoder.hasMesh ? decoder.mesh.vertexCount : 0;
+  }
+
+  /** All that is held is looked at, about. */
+  private get isLean(): boolean { return this.lookedAt !== null; }
+
+  /** The parts, as coarse as they have to be. */
+  private get parts(): Wanted[] {
+    return this.wanted.map((w) => ({ window: w.window, error: Math.max(w.error * this.coarser, this.leastError) }));
+  }
+
+  /** The first part that is open, at its next step: part after part takes half as many answers as all in turns. */
   private nextWanted(): Wanted | undefined {
-    return this.wanted
-      .map((w): Wanted => ({ window: w.window, error: Math.max(w.error * this.coarser, this.leastError) }))
-      .map((w) => this.rung(w)).find((w) => !this.received.covers(w));
+    return this.parts.map((w) => this.rung(w)).find((w) => !this.received.covers(w));
+  }
+
+  /** The error of a part; null: nothing is known of it. */
+  private errorThere([west, south, east, north]: Window): number | null {
+    const there = certifiedAt(this.received.certified, [{ x: west, y: south }, { x: east, y: north }]);
+    // Before all borders of voids are there no error is finite: that of nothing is the relief.
+    return there && Math.min(there.error, this.relief);
   }
 
   /**
@@ -135,17 +157,31 @@ export class ServedView implements TerrainView {
   private rung(wanted: Wanted): Wanted {
     const { computing } = this.collection.limits ?? {};
     if (this.lastTook === null || computing === undefined || this.received.covers(wanted)) return wanted;
-    const [west, south, east, north] = wanted.window;
-    const there = certifiedAt(this.received.certified, [{ x: west, y: south }, { x: east, y: north }]);
     const finer = Math.max(leastFiner, Math.min(mostFiner, shareOfTime * computing / Math.max(1, this.lastTook)));
-    // Before all borders of voids are there no error is finite: that of nothing is the relief.
-    const most = Math.min(there?.error ?? 0, this.relief);
-    return { window: wanted.window, error: Math.max(wanted.error, most / finer) };
+    return { window: wanted.window, error: Math.max(wanted.error, (this.errorThere(wanted.window) ?? 0) / finer) };
   }
 
   private startAnew(): void {
     this.received = new Received(this.module);
-    this.isLean = true;
+    this.lookedAt = this.wanted.map((w) => w.window);
+  }
+
+  /**
+   * There is no room for more. What is not looked at goes; where all is looked at, and all parts are about as fine as one another,
+   * they stay as they are.
+   */
+  private makeDo(): void {
+    const times = this.parts.map(({ window, error }) => Math.max(1, (this.errorThere(window) ?? this.relief) / error));
+    const most = Math.max(...times);
+    // Borders of voids come before anything is certified: they come as far as there is room.
+    if (this.received.certified.every((part) => part.error === Infinity)) return;
+    if (this.isLean && most <= mostUneven * Math.min(...times)) {
+      // Rounding shall not leave a part open.
+      this.coarser *= most * (1 + 1e-9);
+      return;
+    }
+    if (this.isLean) this.coarser *= 1.5;
+    this.startAnew();
   }
 
   /**
@@ -192,7 +228,7 @@ export class ServedView implements TerrainView {
       if (error instanceof DecodeError) this.startAnew();
       await this.waitAfter(error);
     }
-    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > Math.min(this.mostVertices, this.mostHeld)) this.makeRoom(to, wanted);
+    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > this.budget.most) this.makeRoom(to, wanted);
   }
 
   /** Whether the service has a terrain of other bounds or heights now. */
@@ -239,7 +275,7 @@ export class ServedView implements TerrainView {
   private askForLess(wanted: Wanted, to: Received): void {
     this.isTooMuch = true;
     if (!this.isLean && to.decoder.hasMesh) {
-      this.mostHeld = Math.min(this.mostHeld, 0.8 * to.decoder.mesh.vertexCount);
+      this.budget.lowerBelow(to.decoder.mesh.vertexCount);
       this.startAnew();
       return;
     }
@@ -252,7 +288,8 @@ export class ServedView implements TerrainView {
     const response = await this.service.stream(to.asking(wanted, mostBytes));
     this.cost = costOf(response);
     this.lastTook = millisecondsOf(response);
-    let { bytes } = to;
+    const before = to.bytes, held = to.decoder.hasMesh ? to.decoder.mesh.vertexCount : 0;
+    let bytes = before;
     for await (const _ of to.take(wanted, response)) {
       // Frames come quicker than anybody looks.
       if (to.bytes === bytes) continue;
@@ -260,5 +297,14 @@ export class ServedView implements TerrainView {
       ({ bytes } = to);
       if (to === this.shown) this.events.grown();
     }
+    this.budget.note(to.decoder.mesh.vertexCount - held, to.bytes - before);
   }
+}
+
+/** The share of a window that others cover, which do not overlap by much. */
+function shareOf(window: Window, others: readonly Window[]): number {
+  const area = ([west, south, east, north]: Window): number => Math.max(0, east - west) * Math.max(0, north - south);
+  const common = (a: Window, b: Window): Window =>
+    [Math.max(a[0], b[0]), Math.max(a[1], b[1]), Math.min(a[2], b[2]), Math.min(a[3], b[3])];
+  return others.reduce((sum, other) => sum + area(common(window, other)), 0) / area(window);
 }

@@ -20,11 +20,11 @@ const info = JSON.parse(ptin('info', store, '--json')) as { bounds: { min_x: num
 const bounds: Window = [info.bounds.min_x, info.bounds.min_y, info.bounds.max_x, info.bounds.max_y];
 const collection: Collection = { title: 'm', bounds, heights: [633, 1576] };
 
-/** The thing served: a store, and the most splits of an answer. */
+/** The thing served: a store, and the most splits of an answer, or of one of so many bytes. */
 interface Serves {
   path: string;
   collection: Collection;
-  mostSplits?: number;
+  mostSplits?: number | ((bytes: number) => number);
   /** The terrain that the service tells of when it is asked again. */
   now?: Collection;
 }
@@ -44,7 +44,8 @@ function served(
       asked.push({ ...wanted, have: have.map((h) => ({ ...h })) });
       refuses(asked[asked.length - 1], max_bytes);
       const more = have.length === 0 ? [] : ['--have', JSON.stringify(have)];
-      const most = mostSplits === undefined ? [] : ['--splits', String(mostSplits)];
+      const splits = typeof mostSplits === 'function' ? Math.floor(mostSplits(max_bytes)) : mostSplits;
+      const most = splits === undefined ? [] : ['--splits', String(splits)];
       ptin('stream', path, '--error', String(wanted.error), '--window', ...wanted.window.map(String), ...more, ...most,
         '-o', file('served.ptins'), '--overwrite');
       return new Response(readFileSync(file('served.ptins')), { headers: { 'Ptin-Fingerprint': 'f', 'Server-Timing': 'compute;dur=10' } });
@@ -152,6 +153,40 @@ test('the budget of vertices is kept: by leaving what is not looked at, then by 
   await settled();
   assert.ok(view.decoder.mesh.vertexCount <= 9000);
   assert.equal(view.progress.heldBy, 'vertices');
+});
+
+/** As a service that keeps to the bytes of an answer. */
+const byBytes: Serves = { path: store, collection, mostSplits: (bytes) => bytes / 4 };
+
+test('where all is looked at and there is no room for more, what came stays, and a small move asks for nothing', async () => {
+  const { view, asked, settled } = served(40000, () => undefined, byBytes);
+  void view.run();
+  await settled();
+  view.setView([{ window: bounds, error: 0.05 }]);
+  await settled();
+  const held = view.decoder.mesh.vertexCount;
+  assert.ok(held > 0.8 * 40000 && held <= 40000, `${held} vertices`);
+  assert.ok(asked.slice(1).every((a) => a.have.length > 0), 'nothing was fetched anew');
+  assert.equal(view.progress.heldBy, 'vertices');
+  const requests = asked.length;
+  view.setView([{ window: widened(bounds, bounds, -0.02), error: 0.05 }]);
+  await settled();
+  assert.equal(asked.length, requests);
+});
+
+test('where there is room for less than is wanted, parts are about as fine as one another', async () => {
+  const { view, settled } = served(30000, () => undefined, byBytes);
+  void view.run();
+  await settled();
+  const half = (bounds[0] + bounds[2]) / 2;
+  const wanted: Wanted[] = [{ window: [bounds[0], bounds[1], half, bounds[3]], error: 0.05 }, { window: [half, bounds[1], bounds[2], bounds[3]], error: 0.2 }];
+  view.setView(wanted);
+  await settled();
+  const times = wanted.map(({ window: [west, south, east, north], error }) =>
+    certifiedAt(view.certified, [{ x: west, y: south }, { x: east, y: north }])!.error / error);
+  assert.ok(Math.max(...times) > 2, 'there is too little room');
+  assert.ok(Math.max(...times) <= 4 * Math.min(...times), `${times}`);
+  assert.ok(view.decoder.mesh.vertexCount <= 30000);
 });
 
 test('refusals are mended: a replaced file begins anew, too much becomes less', async () => {
