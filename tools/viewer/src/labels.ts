@@ -152,16 +152,34 @@ export function peakLabels(peaks: readonly Peak[], project: (place: Place) => Pr
   });
 }
 
-/** Those that overlap none before them. */
-export function apart(labels: readonly Label[]): Label[] {
-  const kept: Array<Label & { w: number; h: number }> = [];
-  for (const label of labels) {
-    const length = 7 * label.text.length + 8, height = label.kind === 'peak' ? 30 : 16;
-    const cosine = Math.abs(Math.cos(label.angle)), sine = Math.abs(Math.sin(label.angle));
-    const w = (length * cosine + height * sine) / 2, h = (length * sine + height * cosine) / 2;
-    if (kept.every((k) => Math.abs(k.x - label.x) > k.w + w || Math.abs(k.y - label.y) > k.h + h)) kept.push({ ...label, w, h });
-  }
-  return kept;
+/** A part of the picture, by its middle and half of its sides, CSS pixels. */
+export interface Box {
+  x: number;
+  y: number;
+  w: number;
+  h: number;
+}
+
+/** A label's letters, and the mark below those of a peak. */
+function boxOf(label: Label): Box {
+  const isPeak = label.kind === 'peak';
+  const length = 7 * label.text.length + 8, height = isPeak ? 30 : 16;
+  const cosine = Math.abs(Math.cos(label.angle)), sine = Math.abs(Math.sin(label.angle));
+  return {
+    x: label.x, y: isPeak ? label.y - 12 : label.y, w: (length * cosine + height * sine) / 2, h: (length * sine + height * cosine) / 2,
+  };
+}
+
+/** Those that lie whole in the picture and overlap neither its panels nor one before them. */
+export function apart(labels: readonly Label[], size: { width: number; height: number }, panels: readonly Box[]): Label[] {
+  const taken = [...panels];
+  return labels.filter((label) => {
+    const { x, y, w, h } = boxOf(label);
+    const isWhole = x >= w && y >= h && x <= size.width - w && y <= size.height - h;
+    const isFree = isWhole && taken.every((t) => Math.abs(t.x - x) > t.w + w || Math.abs(t.y - y) > t.h + h);
+    if (isFree) taken.push({ x, y, w, h });
+    return isFree;
+  });
 }
 
 const namespace = 'http://www.w3.org/2000/svg';

@@ -5,7 +5,7 @@ import type { Window } from 'ptin-decoder';
 import { signOf } from './format';
 import type { Frame } from './frame';
 import {
-  apart, type ContourPiece, contourLabels, drawLabels, indexContours, type Label, type LabelledMesh, type Peak, peakLabels,
+  apart, type Box, type ContourPiece, contourLabels, drawLabels, indexContours, type Label, type LabelledMesh, type Peak, peakLabels,
 } from './labels';
 import { part } from './page';
 import type { Peaks } from './peaks';
@@ -74,11 +74,12 @@ export class Overlay {
   private write(frame: Frame): void {
     const { picture } = this;
     const { clientWidth: width, clientHeight: height } = picture.canvas;
+    const size = { width, height };
     const sign = signOf(frame.units.height);
     const project = (place: Place): Projected => picture.project(place);
     const all = apart([
-      ...peakLabels(this.peaks, project, sign), ...contourLabels(this.contours(frame), project, { width, height }, sign),
-    ]);
+      ...peakLabels(this.peaks, project, sign), ...contourLabels(this.contours(frame), project, size, sign),
+    ], size, panelsOver(picture.canvas));
     this.labels = all.filter((label) => this.isInSight(label));
     drawLabels(part('labels'), this.labels);
     this.isShown = true;
@@ -101,4 +102,12 @@ export class Overlay {
     if (place === null) return label.kind === 'peak';
     return this.picture.distance(place) > 0.97 * this.picture.distance(label.of);
   }
+}
+
+/** What stands over the picture. */
+function panelsOver(canvas: HTMLCanvasElement): Box[] {
+  const { left, top } = canvas.getBoundingClientRect();
+  return [...document.querySelectorAll('.glass')].map((panel) => panel.getBoundingClientRect())
+    .filter((box) => box.width > 0)
+    .map((box) => ({ x: box.x + box.width / 2 - left, y: box.y + box.height / 2 - top, w: box.width / 2, h: box.height / 2 }));
 }

@@ -51,9 +51,14 @@ test('labels stand on index contours, follow them, and their heads are uphill', 
   }
 });
 
-test('labels keep apart', () => {
-  const label = (x: number, y: number): Label => ({ x, y, angle: 0, text: '100 m', kind: 'contour', of: { x, y, z: 0 } });
-  assert.deepEqual(apart([label(0, 0), label(20, 5), label(60, 0), label(0, 20)]).map((l) => [l.x, l.y]), [[0, 0], [60, 0], [0, 20]]);
+test('labels keep apart, in the picture and off its panels', () => {
+  const label = (x: number, y: number, kind: Label['kind'] = 'contour'): Label => ({ x, y, angle: 0, text: '100 m', kind, of: { x, y, z: 0 } });
+  const size = { width: 300, height: 200 };
+  const places = (labels: Label[], panels: Parameters<typeof apart>[2] = []): number[][] => apart(labels, size, panels).map((l) => [l.x, l.y]);
+  assert.deepEqual(places([label(100, 100), label(120, 105), label(160, 100), label(100, 120)]), [[100, 100], [160, 100], [100, 120]]);
+  assert.deepEqual(places([label(10, 100), label(290, 100), label(100, 5), label(100, 195), label(100, 20, 'peak'), label(100, 30, 'peak')]), [[100, 30]]);
+  const panel = { x: 250, y: 100, w: 50, h: 80 };
+  assert.deepEqual(places([label(190, 100), label(170, 100), label(250, 190)], [panel]), [[170, 100], [250, 190]]);
 });
 
 test('peaks are asked for once a square, and nearer ones of smaller squares', async () => {
