@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How a base map is laid over the terrain: a pixel's place on the map is found by itself, so no triangle bends it.
+import { treeRow } from './map_tiles';
 
 export const mapText = /* glsl */ `
 uniform mat4 lonOf, latOf;     // by powers of the shares below, radians beside the middle
@@ -29,7 +30,8 @@ vec3 mapped(vec3 colour) {
     at *= 2.0;
     vec2 part = floor(at);
     at -= part;
-    uvec2 node = texelFetch(mapTree, ivec2(first + int(part.x) + 2 * int(part.y), 0), 0).xy;
+    int entry = first + int(part.x) + 2 * int(part.y);
+    uvec2 node = texelFetch(mapTree, ivec2(entry % ${treeRow}, entry / ${treeRow}), 0).xy;
     if (node.x > 0u) {
       layer = int(node.x) - 1;
       within = at;

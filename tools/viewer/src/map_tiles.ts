@@ -71,9 +71,12 @@ export function wantedTiles(grid: TileGrid, sight: TileSight, side: number, most
   return kept;
 }
 
+/** Entries of a row of the tree: a card takes 2048 at least, and a few tiles deep down in parts of their own need more than that. */
+export const treeRow = 256;
+
 /**
- * The tree that the shader goes down: for each tile the layer of its picture plus one, or 0, and where its four parts begin, or 0. The
- * first four entries are the grid's.
+ * The tree that the shader goes down, in whole rows: for each tile the layer of its picture plus one, or 0, and where its four parts
+ * begin, or 0. The first four entries are the grid's.
  */
 export function treeOf(layers: ReadonlyMap<string, number>): Uint16Array {
   const nodes: Array<[layer: number, parts: number]> = [[0, 0], [0, 0], [0, 0], [0, 0]];
@@ -91,5 +94,7 @@ export function treeOf(layers: ReadonlyMap<string, number>): Uint16Array {
     const [up, column, row] = name.split('/').map(Number);
     nodes[entryOf({ up, column, row })][0] = layer + 1;
   }
-  return Uint16Array.from(nodes.flat());
+  const tree = new Uint16Array(2 * treeRow * Math.ceil(nodes.length / treeRow));
+  tree.set(nodes.flat());
+  return tree;
 }

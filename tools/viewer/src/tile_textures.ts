@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The tiles of a base map on the card.
+import { treeRow } from './map_tiles';
 
 /** Texture units, beside those of gl. */
 const treeUnit = 3, tilesUnit = 4;
@@ -38,7 +39,7 @@ export class TileTextures {
   setTree(tree: Uint16Array): void {
     const { gl } = this;
     gl.activeTexture(gl.TEXTURE0 + treeUnit);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG16UI, tree.length / 2, 1, 0, gl.RG_INTEGER, gl.UNSIGNED_SHORT, tree);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG16UI, treeRow, tree.length / 2 / treeRow, 0, gl.RG_INTEGER, gl.UNSIGNED_SHORT, tree);
   }
 
   free(): void {

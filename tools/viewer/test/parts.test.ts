@@ -10,6 +10,7 @@ import { earthOf, scaleAt } from '../src/earth';
 import { bound, bytes, coordinates, count, height, interval, length, metres, number, roundBelow } from '../src/format';
 import { FileView } from '../src/file_view';
 import { Frame } from '../src/frame';
+import { nameOf, treeOf, treeRow } from '../src/map_tiles';
 import { defaults, fromHash, toHash } from '../src/permalink';
 import { csvOf } from '../src/plot';
 import { certaintyOf, costOf } from '../src/service';
@@ -333,4 +334,20 @@ test('a sea that a coarse mesh crosses in long shallow triangles is one, and mar
   };
   const facts = { minX: 0, minY: 0, maxX: 1000, maxY: 100, minHeight: 0, maxHeight: 100, heightIsFloat: 0, heightStep: 1, heightOffset: 0 } as unknown as Facts;
   assert.deepEqual([...kindsOf(mesh, facts)], [water, water, water, land, land]);
+});
+
+test("the tree of a base map's tiles finds each of them, in rows that every card takes", () => {
+  // Each tile at the finest level, in a part of its own.
+  const tiles = Array.from({ length: 128 }, (_, i) => ({ up: 19, column: (i * 7919 + 13) % 2 ** 20, row: (i * 104729 + 5) % 2 ** 20 }));
+  const tree = treeOf(new Map(tiles.map((tile, layer) => [nameOf(tile), layer])));
+  assert.ok(tree.length / 2 > 2048 && tree.length % (2 * treeRow) === 0 && treeRow <= 2048 && tree.length / 2 / treeRow <= 2048);
+  for (const [layer, { up, column, row }] of tiles.entries()) {
+    let first = 0, entry = 0;
+    for (let depth = up; depth >= 0; --depth) {
+      entry = first + (column >> depth & 1) + 2 * (row >> depth & 1);
+      first = tree[2 * entry + 1];
+    }
+    assert.equal(tree[2 * entry], layer + 1);
+    assert.equal(first, 0);
+  }
 });
