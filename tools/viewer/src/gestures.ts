@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // How pointers move the camera: a button or a finger drags the ground, the right button or two fingers go round what is below
-// them, the wheel and two fingers come nearer to it.
+// them, the wheel and two fingers come nearer to it. In a frame of another page the wheel alone, and a finger up or down, are
+// that page's, which would else end where they meet the terrain.
 import type { Triple } from './space';
 import type { Point, View } from './view';
 
@@ -12,6 +13,13 @@ const understood = 10;
 
 type Pixel = { x: number; y: number };
 
+/** Whether the page is part of another one. */
+export interface Framed {
+  isFramed: boolean;
+  /** The wheel went on to the other page; its user may not know how to come nearer. */
+  passedOn(): void;
+}
+
 export class Gestures {
   private readonly pointers = new Map<number, Pixel>();
   private level = 0;
@@ -21,12 +29,17 @@ export class Gestures {
   private pair: 'tilt' | 'pinch' | null = null;
   private begun: Pixel[] = [];
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly view: View) {
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly view: View, framed: Framed) {
+    canvas.style.touchAction = framed.isFramed ? 'pan-y' : 'none';
     canvas.addEventListener('pointerdown', (e) => { this.down(e); });
     canvas.addEventListener('pointermove', (e) => { this.move(e); });
     for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (e) => { this.up(e); });
     canvas.addEventListener('contextmenu', (e) => { e.preventDefault(); });
     canvas.addEventListener('wheel', (e) => {
+      if (framed.isFramed && !e.ctrlKey && !e.metaKey) {
+        framed.passedOn();
+        return;
+      }
       e.preventDefault();
       const lines = e.deltaMode === WheelEvent.DOM_DELTA_LINE ? 30 : 1;
       const step = Math.max(-240, Math.min(240, e.deltaY * lines));

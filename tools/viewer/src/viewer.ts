@@ -69,7 +69,8 @@ class Viewer {
     this.isServed = boot.source?.kind === 'collection';
     this.relief = new Relief(canvas);
     this.view = new View(this.relief.camera, this.relief);
-    new Gestures(canvas, this.view);
+    const isFramed = document.body.classList.contains('embed') && parent !== window;
+    new Gestures(canvas, this.view, { isFramed, passedOn: () => { toast('Ctrl or ⌘ and the wheel come nearer'); } });
     this.compass = new Compass(() => { this.view.turnNorth(); });
     this.panel = new Panel(fromHash(location.hash).settings, (key) => { this.apply(key); });
     this.baseMap = new OfferedMap(this.relief, this.view, this.panel);

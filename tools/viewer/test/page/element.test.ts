@@ -70,6 +70,27 @@ test('an element of another page shows a stream, and follows its attributes', ()
   },
 ));
 
+test('the wheel over a framed terrain moves the page that it is in, and with Ctrl the camera', () => onOtherPage(
+  `<script src="${fast.url}ptin-terrain.js"></script>`,
+  `<ptin-terrain src="${fast.url}mountains_257.ptins" style="height: 500px"></ptin-terrain><p style="height: 4000px">More.</p>`,
+  async (page, frame) => {
+    const distance = (): Promise<number> => frame.evaluate(() => window.ptinViewer.view.current.distance);
+    const before = await distance();
+    await page.mouse.move(400, 300);
+    await page.mouse.wheel(0, 120);
+    await page.waitForFunction(() => scrollY > 0);
+    assert.equal(await distance(), before);
+    assert.match((await frame.textContent('#toast'))!, /Ctrl/);
+    assert.equal(await frame.evaluate(() => getComputedStyle(document.getElementById('relief')!).touchAction), 'pan-y');
+    const top = await page.evaluate(() => scrollY);
+    await page.keyboard.down('Control');
+    await page.mouse.wheel(0, -240);
+    await page.keyboard.up('Control');
+    await frame.waitForFunction((was) => window.ptinViewer.view.current.distance < 0.95 * was, before);
+    assert.equal(await page.evaluate(() => scrollY), top);
+  },
+));
+
 test('an element whose script is the page\'s own, a module, shows a terrain of a service that names no other origin', () => served(`hills=${store}`, (address) => onOtherPage(
   '<script type="module" src="ptin-terrain.js"></script>',
   `<ptin-terrain src="${address}collections/hills" viewer="${address}viewer" view="error=20"></ptin-terrain>`,
