@@ -88,18 +88,21 @@ export class ServedView implements TerrainView {
     if (this.lookedAt?.some((window) => shareOf(window, windows) < 0.5) ?? false) this.lookedAt = null;
     this.isTooMuch = false;
     this.mostBytes = laterBytes;
+    this.budget.recover();
     if (!this.isLean) this.coarser = Math.max(1, this.coarser * 0.8);
     this.wake?.();
   }
 
   async run(): Promise<void> {
+    // All of the terrain, coarsely: so that something is known of each place, of those beside the parts, too.
     const first: Wanted = { window: this.collection.bounds, error: Math.max(this.relief / 50, 1e-6) };
-    while (!this.received.decoder.hasMesh) {
-      await this.bring(first, firstBytes);
-      if (this.isTooMuch && first.error < this.relief) first.error *= 2;
-    }
     for (;;) {
-      if (this.nextWanted() !== undefined && this.budget.isFull(this.held)) this.makeDo();
+      if (!this.received.decoder.hasMesh) {
+        await this.bring(first, firstBytes);
+        if (!this.received.decoder.hasMesh && this.isTooMuch && first.error < this.relief) first.error *= 2;
+        continue;
+      }
+      if (this.nextWanted() !== undefined && this.budget.isFull(this.held) && this.makesDo()) continue;
       const next = this.nextWanted();
       if (next !== undefined) {
         this.isLoading = true;
@@ -168,20 +171,21 @@ export class ServedView implements TerrainView {
 
   /**
    * There is no room for more. What is not looked at goes; where all is looked at, and all parts are about as fine as one another,
-   * they stay as they are.
+   * they stay as they are. False where nothing can be done.
    */
-  private makeDo(): void {
+  private makesDo(): boolean {
     const times = this.parts.map(({ window, error }) => Math.max(1, (this.errorThere(window) ?? this.relief) / error));
     const most = Math.max(...times);
     // Borders of voids come before anything is certified: they come as far as there is room.
-    if (this.received.certified.every((part) => part.error === Infinity)) return;
+    if (this.received.certified.every((part) => part.error === Infinity)) return false;
     if (this.isLean && most <= mostUneven * Math.min(...times)) {
       // Rounding shall not leave a part open.
       this.coarser *= most * (1 + 1e-9);
-      return;
+      return true;
     }
     if (this.isLean) this.coarser *= 1.5;
     this.startAnew();
+    return true;
   }
 
   /**

@@ -13,14 +13,18 @@ const leastSplits = 1000;
 /** What the service refused was too much by no more than an answer, which is a fifth where it is largest. */
 const shareAfterRefusal = 0.8;
 
+/** What is tried again at each view after a refusal: a service that was busy may be so no more. */
+const growthAfterRefusal = 1.1;
+
 export class VertexBudget {
+  private readonly told: number;
   private served: number;
   /** Bytes of a split of the last answer; none is smaller where nothing came. */
   private bytesOfSplit = 1;
 
   /** @param drawn   Vertices that the picture takes.  @param held  Those that the service goes on from, as it tells. */
   constructor(private readonly drawn: number, held: number) {
-    this.served = shareOfHeld * held;
+    this.served = this.told = shareOfHeld * held;
   }
 
   get most(): number { return Math.min(this.drawn, this.served); }
@@ -39,8 +43,12 @@ export class VertexBudget {
     return Math.max(1, Math.min(mostBytes, Math.floor((this.most - vertices) * shareOfBytes * this.bytesOfSplit)));
   }
 
-  /** The service had not the memory to go on from so many. */
+  /** The service had not the memory, or the time, to go on from so many. */
   lowerBelow(vertices: number): void {
     this.served = Math.min(this.served, shareAfterRefusal * vertices);
+  }
+
+  recover(): void {
+    this.served = Math.min(this.told, growthAfterRefusal * this.served);
   }
 }

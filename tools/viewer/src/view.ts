@@ -383,18 +383,27 @@ export class View {
     return parts;
   }
 
-  /** Places of the terrain's middle height under points of the picture, and how far they are. */
+  /**
+   * Places of the terrain under points of the picture, and how far they are: on the ground; where a ray meets none, since it goes through
+   * a void or nothing is there yet, at its middle height.
+   */
   private seenPlaces(frame: Frame): Array<{ x: number; y: number; distance: number }> {
     const places = [];
     const middle = 0.4 * frame.relief * this.exaggeration;
-    const { camera } = this;
+    const { camera, factor, surface } = this;
+    const [px, py, pz] = camera.position;
     const columns = 12, rows = 12;
     for (let i = 0; i <= columns; ++i) {
       for (let j = 0; j <= rows; ++j) {
         const ray = camera.ray(2 * i / columns - 1, 2 * j / rows - 1);
-        const reach = ray[2] < -1e-3 ? (middle - camera.position[2]) / ray[2] : Infinity;
+        const ground = surface.meets([px, py, pz / factor], [ray[0], ray[1], ray[2] / factor]);
+        if (ground !== null) {
+          places.push({ x: px + ray[0] * ground, y: py + ray[1] * ground, distance: ground });
+          continue;
+        }
+        const reach = ray[2] < -1e-3 ? (middle - pz) / ray[2] : Infinity;
         const distance = Math.min(reach > 0 ? reach : camera.far, camera.far);
-        const x = camera.position[0] + ray[0] * distance, y = camera.position[1] + ray[1] * distance;
+        const x = px + ray[0] * distance, y = py + ray[1] * distance;
         const inX = Math.max(-frame.width / 2, Math.min(frame.width / 2, x));
         const inY = Math.max(-frame.depth / 2, Math.min(frame.depth / 2, y));
         if (Math.hypot(x - inX, y - inY) > 0.3 * Math.hypot(frame.width, frame.depth) && reach !== Infinity) continue;

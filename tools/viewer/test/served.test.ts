@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A terrain of a service, played by the program: only what is missing is asked for, within a budget of vertices.
-import { certifiedAt, type Collection, Problem, type Serving, type StreamBody, type Wanted, widened, type Window } from 'ptin-decoder';
+import { certifiedAt, certifiedWithin, type Collection, Problem, type Serving, type StreamBody, type Wanted, widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
@@ -148,6 +148,13 @@ test('the budget of vertices is kept: by leaving what is not looked at, then by 
     await settled();
     assert.ok(view.decoder.mesh.vertexCount <= 9000, `${view.decoder.mesh.vertexCount} vertices`);
   }
+  // What lies beside the parts is certified, too, after a start anew.
+  view.setView([{ window: corner(1, 1), error: 1 }]);
+  await settled();
+  view.setView([{ window: corner(2, 1), error: 0.3 }]);
+  await settled();
+  const anew = asked.map((a) => a.have.length).lastIndexOf(0);
+  assert.ok(anew > 0 && certifiedWithin(view.certified, bounds) !== null);
   assert.ok(asked.some((a, i) => i > 0 && a.have.length === 0), 'a view was fetched anew');
   view.setView([{ window: bounds, error: 0.5 }]);
   await settled();

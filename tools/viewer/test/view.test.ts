@@ -114,6 +114,43 @@ test('the scene is projected as the matrix has it', () => {
   assert.equal(view.project(x, y, z / 3).visible, false, 'behind the camera');
 });
 
+test('windows are in sight where the picture may show a part of them, however large they are', () => {
+  const { view, rest } = viewed();
+  // Near the ground in the middle of the terrain, looking north.
+  view.pose({ x: 503840, y: 5003840, height: 1000, distance: 900, heading: 0, tilt: 60 });
+  rest();
+  const isSeen = view.seenWindows(framed());
+  const [west, south, east, north] = [500000, 5000000, 507680, 5007680];
+  const { camera } = view;
+  const shown = (x: number, y: number): boolean => [0, 500, 1000, 1500].some((z) => {
+    const at = camera.project([x - 503840, y - 5003840, z * view.exaggeration]);
+    return at !== null && Math.abs(at.x) < 1 && Math.abs(at.y) < 1;
+  });
+  for (let i = 0; i < 12; ++i) {
+    for (let k = 0; k < 12; ++k) {
+      const x = west + 640 * i, y = south + 640 * k;
+      if (shown(x + 320, y + 320)) assert.ok(isSeen([x, y, x + 640, y + 640]), `${i} ${k}`);
+    }
+  }
+  assert.ok(isSeen([west, south, east, north]));
+  // All that lies to the west up to where the camera stands, behind it and beside: no pixel has any of it.
+  assert.ok(!isSeen([west, south, 502300, 5003800]) && !isSeen([west, south, east, 5002500]));
+  // What is wanted is what is seen, in a valley far below the terrain's middle height, too.
+  for (const [x, y] of [[503840, 5003840], [505400, 5003840], [503300, 5004400]]) {
+    view.pose({ x, y, height: 300 + relief(x - 503840, y - 5003840), distance: 400, heading: 40, tilt: 55 });
+    rest();
+    const [farthest] = view.wanted(720, 0.33);
+    for (let i = -4; i <= 4; ++i) {
+      const [px, py, pz] = view.camera.position, ray = view.camera.ray(i / 4, -0.9);
+      const share = meets([px, py, pz / view.exaggeration], [ray[0], ray[1], ray[2] / view.exaggeration]);
+      if (share === null) continue;
+      const [atX, atY] = [503840 + px + share * ray[0], 5003840 + py + share * ray[1]];
+      const [w, s, e, n] = farthest.window;
+      assert.ok(atX > w - 60 && atX < e + 60 && atY > s - 60 && atY < n + 60, `${i}: ${atX} ${atY} in ${farthest.window}`);
+    }
+  }
+});
+
 test('lowland is drawn higher than mountains', () => {
   const spread = (relief: number) => ({ low: 0, high: relief, least: 0, most: relief });
   const factors = [3000, 600, 60, 6].map((relief) => usualExaggeration(framed(0, relief), spread(relief)));
