@@ -139,17 +139,17 @@ TEST(ServeReload, TakesTheCollectionsOfTheMoment) {
   options.files = {a};
   ServedTerrains served(options);
   const std::string etag = served.get("/collections/a").header("etag");
-  served.service().reload([&] { return std::vector{a, b}; });
+  served.service().reload([&] { return serve::Reread{{a, b}, {}}; });
   EXPECT_EQ(served.get("/collections/b").status, 200);
   EXPECT_EQ(served.get("/collections/a").header("etag"), etag);
   EXPECT_NE(served.log().find(R"("event":"reload","collections":["a","b"])"), std::string::npos);
   // What is broken leaves all as it was.
-  served.service().reload([]() -> std::vector<serve::ServedFile> { refuse("no TOML", "a.toml"); });
-  served.service().reload([&] { return std::vector<serve::ServedFile>{{"c", folder.file("c")}}; });
-  served.service().reload([&] { return std::vector{b, b}; });
+  served.service().reload([]() -> serve::Reread { refuse("no TOML", "a.toml"); });
+  served.service().reload([&] { return serve::Reread{{{"c", folder.file("c")}}, {}}; });
+  served.service().reload([&] { return serve::Reread{{b, b}, {}}; });
   EXPECT_NE(served.log().find("a.toml: no TOML"), std::string::npos) << served.log();
   EXPECT_EQ(served.get("/collections").json().at("collections").size(), 2U);
-  served.service().reload([&] { return std::vector<serve::ServedFile>{{"a", b.path}}; });
+  served.service().reload([&] { return serve::Reread{{{"a", b.path}}, {}}; });
   EXPECT_EQ(served.get("/collections/b").status, 404);
   EXPECT_EQ(served.get("/collections/a").status, 200);
 }
@@ -178,6 +178,19 @@ TEST(ServeReload, HappensOnSighup) {
         comes_true([&] { return service.err().find("\"refused\":") != std::string::npos; }));
     EXPECT_TRUE(answers("/collections/a", "200"));
     EXPECT_TRUE(answers("/collections/b", "200"));
+    // What is not heard is told, and what is no line of TOML by the file that has it.
+    write_config("a = \"a.ptin\"\n[limits]\npoints = 7\n");
+    service.send(SIGHUP);
+    EXPECT_TRUE(comes_true([&] {
+      return service.err().find(R"("collections":["a"],"from_next_start":["limits.points"])") !=
+             std::string::npos;
+    })) << service.err();
+    write_config("broken [\n");
+    service.send(SIGHUP);
+    EXPECT_TRUE(comes_true([&] {
+      return service.err().find(config + R"(: \"broken [\" cannot be the name)") !=
+             std::string::npos;
+    })) << service.err();
   }
   EXPECT_FALSE(fs::exists(path));  // After SIGTERM.
 }

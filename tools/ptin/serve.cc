@@ -6,10 +6,14 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -130,9 +134,27 @@ std::string sizes_text(const serve::ServeOptions& options) {
          " a question; " + counted(limits.connections, "connection");
 }
 
+using Settings = std::map<std::string, std::string>;
+
+Settings settings_of(const ServeCommand& command) {
+  return command.config.empty() ? Settings() : serve::settings_in(command.config);
+}
+
+/// The command's files as its configuration names them now, and what else that says otherwise than it did.
+serve::Reread reread(const ServeCommand& command, const Settings& begun) {
+  const Settings now = settings_of(command);
+  std::vector<std::pair<std::string, std::string>> differ;
+  std::set_symmetric_difference(begun.begin(), begun.end(), now.begin(), now.end(),
+                                std::back_inserter(differ));
+  std::set<std::string> names;
+  for (const auto& [name, value] : differ) names.insert(name);
+  return {options_of(command).files, {names.begin(), names.end()}};
+}
+
 int run_serve(const ServeCommand& command, const Context& context) {
   install_sigbus_guard();  // A file that is cut short fails questions, not the service.
   serve::ServeOptions options = options_of(command);
+  const Settings begun = settings_of(command);
   options.bound_freed_memory = keep_freed_memory_of_questions(options.http.kept_bytes);
   options.give_back_freed_memory = give_back_freed_memory;
   std::signal(SIGPIPE, SIG_IGN);  // Of whoever read the log and left.
@@ -154,7 +176,7 @@ int run_serve(const ServeCommand& command, const Context& context) {
     server.drain();
   });
   // Collections alone: what else a configuration says counts from the next start on.
-  const OnHangUp reloads([&] { service.reload([&] { return options_of(command).files; }); });
+  const OnHangUp reloads([&] { service.reload([&] { return reread(command, begun); }); });
   server.run();
   service.watch(nullptr);
   return kExitDone;

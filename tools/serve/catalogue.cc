@@ -88,6 +88,14 @@ const BaseMap& base_map_of(const ServeOptions& options, const Collection& collec
   return options.base_map ? *options.base_map : collection.base_map;
 }
 
+void check_collection_name(const std::string& name, const std::string& where) {
+  if (is_name(name)) return;
+  refuse("\"" + name +
+             "\" cannot be the name of a collection: give one of letters, digits, -, _ and . as "
+             "NAME=FILE",
+         where);
+}
+
 Catalogue::Catalogue(const std::vector<ServedFile>& files, Warn warn)
     : warn_(std::move(warn)),
       entries_(std::make_shared<const Entries>(opened_entries(files, {}))) {}
@@ -96,12 +104,7 @@ Catalogue::Entries Catalogue::opened_entries(const std::vector<ServedFile>& file
                                              const Entries& known) {
   Entries entries;
   for (const ServedFile& file : files) {
-    if (!is_name(file.id)) {
-      refuse("\"" + file.id +
-                 "\" cannot be the name of a collection: give one of letters, digits, -, _ and . "
-                 "as NAME=FILE",
-             file.path);
-    }
+    check_collection_name(file.id, file.path);
     const auto before = known.find(file.id);
     std::shared_ptr<Entry> entry;
     if (before != known.end() && before->second->path == file.path) {

@@ -62,6 +62,10 @@ struct Collection {
 [[nodiscard]] const BaseMap& base_map_of(const ServeOptions& options,
                                          const Collection& collection) noexcept;
 
+/// @param where  Gave it, for the error.
+/// @throws Error invalid_argument  a collection cannot have this name
+void check_collection_name(const std::string& name, const std::string& where);
+
 /// Changes whenever the bytes of any answer may: with the file, and with the program.
 [[nodiscard]] std::string version_of(const Collection& collection, const std::string& program);
 

@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/number.h"
+#include "tools/serve/catalogue.h"
 #include "tools/serve/limit_table.h"
 
 namespace ptin::serve {
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostThreads = 1024;  // As --threads.
 
-std::vector<CLI::ConfigItem> items_of(const std::string& path) {
+std::vector<CLI::ConfigItem> parsed(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw system_error(errno, "cannot open", path);
   try {
@@ -31,6 +32,22 @@ std::vector<CLI::ConfigItem> items_of(const std::string& path) {
   } catch (const CLI::Error& error) {
     refuse(std::string("this is no configuration: ") + error.what(), path);
   }
+}
+
+/// What it says, each with one value.
+std::vector<CLI::ConfigItem> items_of(const std::string& path) {
+  std::vector<CLI::ConfigItem> items = parsed(path);
+  std::erase_if(items, [](const CLI::ConfigItem& item) {
+    return item.name == "++" || item.name == "--";  // A table begins or ends.
+  });
+  for (const CLI::ConfigItem& item : items) {
+    if (item.inputs.size() != 1) refuse("\"" + item.fullname() + "\" has not one value", path);
+  }
+  return items;
+}
+
+bool is_collection(const CLI::ConfigItem& item) {
+  return item.parents == std::vector<std::string>{"collections"};
 }
 
 std::string next_to(const std::string& config, const std::string& file) {
@@ -77,12 +94,11 @@ void take_setting(const std::string& name, const std::string& value, const std::
 
 void read_config(const std::string& path, ServeOptions& options) {
   for (const CLI::ConfigItem& item : items_of(path)) {
-    if (item.name == "++" || item.name == "--") continue;  // A table begins or ends.
-    if (item.inputs.size() != 1) refuse("\"" + item.fullname() + "\" has not one value", path);
     const std::string& value = item.inputs.front();
     if (item.parents.empty()) {
       take_setting(item.name, value, path, options);
-    } else if (item.parents == std::vector<std::string>{"collections"}) {
+    } else if (is_collection(item)) {
+      check_collection_name(item.name, path);
       options.files.push_back({item.name, next_to(path, value)});
     } else if (item.parents == std::vector<std::string>{"limits"}) {
       set_limit(options, item.name, value);
@@ -92,6 +108,14 @@ void read_config(const std::string& path, ServeOptions& options) {
           path);
     }
   }
+}
+
+std::map<std::string, std::string> settings_in(const std::string& path) {
+  std::map<std::string, std::string> settings;
+  for (const CLI::ConfigItem& item : items_of(path)) {
+    if (!is_collection(item)) settings.emplace(item.fullname(), item.inputs.front());
+  }
+  return settings;
 }
 
 void set_base_map_tiles(const std::string& tiles, ServeOptions& options) {

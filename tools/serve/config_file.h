@@ -3,6 +3,7 @@
 // A service's configuration, as TOML.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "tools/serve/serve_options.h"
@@ -17,6 +18,9 @@ namespace ptin::serve {
 ///               invalid_argument  no TOML; a name that means nothing here (named, with those that
 ///                                 do)
 void read_config(const std::string& path, ServeOptions& options);
+
+/// What a configuration says beside its collections: values by names, as "limits.points".  @throws Error as read_config()
+[[nodiscard]] std::map<std::string, std::string> settings_in(const std::string& path);
 
 /// Names the base map of all terrains by its tiles; "none" forbids those that files name. Whom to name for it stays.
 void set_base_map_tiles(const std::string& tiles, ServeOptions& options);

@@ -485,12 +485,14 @@ void TerrainService::note(const http::Served& served) noexcept {
   }
 }
 
-void TerrainService::reload(const std::function<std::vector<ServedFile>()>& files) {
+void TerrainService::reload(const std::function<Reread()>& reread) {
   nlohmann::ordered_json line = {{"time", now_text()}, {"event", "reload"}};
   try {
-    catalogue_.replace(files());
+    const Reread now = reread();
+    catalogue_.replace(now.files);
     line["collections"] = nlohmann::ordered_json::array();
     for (const auto& collection : catalogue_.all()) line["collections"].push_back(collection->id);
+    if (!now.changed.empty()) line["from_next_start"] = now.changed;
   } catch (const std::exception& error) {
     line["refused"] = error.what();
   }

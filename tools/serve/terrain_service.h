@@ -24,6 +24,13 @@ namespace ptin::serve {
 /// Takes a line without its end: standard error of the program, a string in tests.
 using LogLine = std::function<void(const std::string& line)>;
 
+/// What a configuration says when it is read anew.
+struct Reread {
+  std::vector<ServedFile> files;
+  /// Settings beside these that are others than when the service began, which count from its next start on.
+  std::vector<std::string> changed;
+};
+
 class TerrainService : public http::Service {
  public:
   /// Opens every file.  @throws Error as Catalogue
@@ -46,8 +53,8 @@ class TerrainService : public http::Service {
   void watch(const http::Server* server) noexcept { server_ = server; }
   /// Answers from these files from now on, and writes a line of the log that says so; where they cannot be had
   /// all is as before, and the line says why. Threads: any, one at once.
-  /// @param files  May throw Error: the configuration is broken.
-  void reload(const std::function<std::vector<ServedFile>()>& files);
+  /// @param reread  May throw Error: the configuration is broken.
+  void reload(const std::function<Reread()>& reread);
   /// From now on /readyz says no, so that a balancer sends nobody here.
   void begin_to_drain() noexcept { drains_ = true; }
 
