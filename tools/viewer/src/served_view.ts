@@ -176,8 +176,9 @@ export class ServedView implements TerrainView {
   private makesDo(): boolean {
     const times = this.parts.map(({ window, error }) => Math.max(1, (this.errorThere(window) ?? this.relief) / error));
     const most = Math.max(...times);
-    // Borders of voids come before anything is certified: they come as far as there is room.
-    if (this.received.certified.every((part) => part.error === Infinity)) return false;
+    // Borders of voids come before anything is certified: they come as far as there is room. Where all is as fine as wanted, coarser
+    // parts would free nothing.
+    if (most === 1 || this.received.certified.every((part) => part.error === Infinity)) return false;
     if (this.isLean && most <= mostUneven * Math.min(...times)) {
       // Rounding shall not leave a part open.
       this.coarser *= most * (1 + 1e-9);

@@ -12,7 +12,6 @@ const shareOfBytes = 0.8;
 const leastSplits = 1000;
 /** What the service refused was too much by no more than an answer, which is a fifth where it is largest. */
 const shareAfterRefusal = 0.8;
-
 /** What is tried again at each view after a refusal: a service that was busy may be so no more. */
 const growthAfterRefusal = 1.1;
 
