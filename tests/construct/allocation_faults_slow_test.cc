@@ -43,7 +43,7 @@ constexpr std::array<std::string_view, 2> kEndTheProcess = {
 };
 
 bool is_excused() {
-  std::array<void*, 32> frames{};  // Of a template that is not optimised each call is one.
+  std::array<void*, 32> frames{};  // Each call of a template that is not optimised is one.
   const int depth = ::backtrace(frames.data(), static_cast<int>(frames.size()));
   for (int i = 0; i < depth; ++i) {
     Dl_info info{};

@@ -142,7 +142,7 @@ TEST(ServeSmall, SendsPiecesUntilMemoryIsFull) {
   EXPECT_EQ(error, 0.0);
 }
 
-/// What it tells of itself is what it keeps to, and no less than that.
+/// The number that it tells is what it keeps to, and no less than that.
 TEST(ServeSmall, GoesOnFromAsManyVerticesAsItTells) {
   TestFolder folder;
   serve::ServeOptions options = serve_options(folder);

@@ -178,7 +178,7 @@ TEST(ServeReload, HappensOnSighup) {
         comes_true([&] { return service.err().find("\"refused\":") != std::string::npos; }));
     EXPECT_TRUE(answers("/collections/a", "200"));
     EXPECT_TRUE(answers("/collections/b", "200"));
-    // What is not heard is told, and what is no line of TOML by the file that has it.
+    // Settings that are not heard are told, and a line that is no TOML by the file that has it.
     write_config("a = \"a.ptin\"\n[limits]\npoints = 7\n");
     service.send(SIGHUP);
     EXPECT_TRUE(comes_true([&] {

@@ -34,7 +34,7 @@ std::vector<CLI::ConfigItem> parsed(const std::string& path) {
   }
 }
 
-/// What it says, each with one value.
+/// Its items, each with one value.
 std::vector<CLI::ConfigItem> items_of(const std::string& path) {
   std::vector<CLI::ConfigItem> items = parsed(path);
   std::erase_if(items, [](const CLI::ConfigItem& item) {

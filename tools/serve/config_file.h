@@ -19,7 +19,7 @@ namespace ptin::serve {
 ///                                 do)
 void read_config(const std::string& path, ServeOptions& options);
 
-/// What a configuration says beside its collections: values by names, as "limits.points".  @throws Error as read_config()
+/// Values of a configuration beside its collections, by names as "limits.points".  @throws Error as read_config()
 [[nodiscard]] std::map<std::string, std::string> settings_in(const std::string& path);
 
 /// Names the base map of all terrains by its tiles; "none" forbids those that files name. Whom to name for it stays.

@@ -77,7 +77,7 @@ std::vector<StreamHeld> held_of(const Asked& asked) {
 /// A piece may end on any frame, where that is worth the work.
 constexpr std::uint64_t kFewestSplits = 1024;
 
-/// What a piece of so many bytes takes: while it grows, the text is there twice.
+/// Memory of a piece of so many bytes: while it grows, the text is there twice.
 constexpr std::uint64_t bytes_of_text(std::uint64_t piece) { return 2 * piece; }
 
 std::uint64_t most_bytes(const Asked& asked, const PieceQuestion& question) {

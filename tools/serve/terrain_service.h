@@ -24,7 +24,7 @@ namespace ptin::serve {
 /// Takes a line without its end: standard error of the program, a string in tests.
 using LogLine = std::function<void(const std::string& line)>;
 
-/// What a configuration says when it is read anew.
+/// A configuration that was read anew.
 struct Reread {
   std::vector<ServedFile> files;
   /// Settings beside these that are others than when the service began, which count from its next start on.

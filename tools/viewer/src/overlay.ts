@@ -104,7 +104,7 @@ export class Overlay {
   }
 }
 
-/** What stands over the picture. */
+/** The panels that stand over the picture. */
 function panelsOver(canvas: HTMLCanvasElement): Box[] {
   const { left, top } = canvas.getBoundingClientRect();
   return [...document.querySelectorAll('.glass')].map((panel) => panel.getBoundingClientRect())

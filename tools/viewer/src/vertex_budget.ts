@@ -8,11 +8,11 @@ const shareOfHeld = 0.9;
 const shareOfFull = 8 / 9;
 /** Splits of the next answer take at least so much of those of the last one: the finer the mesh, the fewer bytes. */
 const shareOfBytes = 0.8;
-/** Of fewer splits the beginning of an answer weighs too much. */
+/** The beginning of an answer weighs too much where it brings fewer splits. */
 const leastSplits = 1000;
-/** What the service refused was too much by no more than an answer, which is a fifth where it is largest. */
+/** A mesh that the service refused was too large by no more than an answer, which is a fifth where it is largest. */
 const shareAfterRefusal = 0.8;
-/** What is tried again at each view after a refusal: a service that was busy may be so no more. */
+/** The growth that is tried at each view after a refusal: a service that was busy may be so no more. */
 const growthAfterRefusal = 1.1;
 
 export class VertexBudget {

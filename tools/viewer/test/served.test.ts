@@ -148,7 +148,7 @@ test('the budget of vertices is kept: by leaving what is not looked at, then by 
     await settled();
     assert.ok(view.decoder.mesh.vertexCount <= 9000, `${view.decoder.mesh.vertexCount} vertices`);
   }
-  // What lies beside the parts is certified, too, after a start anew.
+  // Places beside the parts are certified, too, after a start anew.
   view.setView([{ window: corner(1, 1), error: 1 }]);
   await settled();
   view.setView([{ window: corner(2, 1), error: 0.3 }]);
