@@ -102,11 +102,11 @@ export class ServedView implements TerrainView {
         if (!this.received.decoder.hasMesh && this.isTooMuch && first.error < this.relief) first.error *= 2;
         continue;
       }
-      if (this.nextWanted() !== undefined && this.budget.isFull(this.held) && this.makesDo()) continue;
+      if (this.nextWanted() !== undefined && this.budget.isFull(verticesOf(this.received)) && this.makesDo()) continue;
       const next = this.nextWanted();
       if (next !== undefined) {
         this.isLoading = true;
-        await this.bring(next, this.budget.bytesBeside(this.held, this.mostBytes));
+        await this.bring(next, this.budget.bytesBeside(verticesOf(this.received), this.mostBytes));
         continue;
       }
       this.shown = this.received;
@@ -125,12 +125,6 @@ export class ServedView implements TerrainView {
       if (question.kind === 'area' && error instanceof Problem && error.status === 404) return measuredInPlan(question, frame);
       throw error;
     }
-  }
-
-  /** Vertices of the receiver. */
-  private get held(): number {
-    const { decoder } = this.received;
-    return decoder.hasMesh ? decoder.mesh.vertexCount : 0;
   }
 
   /** All that is held is looked at, about. */
@@ -233,7 +227,7 @@ export class ServedView implements TerrainView {
       if (error instanceof DecodeError) this.startAnew();
       await this.waitAfter(error);
     }
-    if (to.decoder.hasMesh && to.decoder.mesh.vertexCount > this.budget.most) this.makeRoom(to, wanted);
+    if (verticesOf(to) > this.budget.most) this.makeRoom(to, wanted);
   }
 
   /** Whether the service has a terrain of other bounds or heights now. */
@@ -293,7 +287,7 @@ export class ServedView implements TerrainView {
     const response = await this.service.stream(to.asking(wanted, mostBytes));
     this.cost = costOf(response);
     this.lastTook = millisecondsOf(response);
-    const before = to.bytes, held = to.decoder.hasMesh ? to.decoder.mesh.vertexCount : 0;
+    const before = to.bytes, held = verticesOf(to);
     let bytes = before;
     for await (const _ of to.take(wanted, response)) {
       // Frames come quicker than anybody looks.
@@ -302,14 +296,19 @@ export class ServedView implements TerrainView {
       ({ bytes } = to);
       if (to === this.shown) this.events.grown();
     }
-    this.budget.note(to.decoder.mesh.vertexCount - held, to.bytes - before);
+    this.budget.note(verticesOf(to) - held, to.bytes - before);
   }
 }
 
-/** The share of a window that others cover, which do not overlap by much. */
+/** Vertices of a receiver. */
+function verticesOf({ decoder }: Received): number {
+  return decoder.hasMesh ? decoder.mesh.vertexCount : 0;
+}
+
+/** The largest share of a window that one of the others covers: those of a view lie in one another. */
 function shareOf(window: Window, others: readonly Window[]): number {
   const area = ([west, south, east, north]: Window): number => Math.max(0, east - west) * Math.max(0, north - south);
   const common = (a: Window, b: Window): Window =>
     [Math.max(a[0], b[0]), Math.max(a[1], b[1]), Math.min(a[2], b[2]), Math.min(a[3], b[3])];
-  return others.reduce((sum, other) => sum + area(common(window, other)), 0) / area(window);
+  return Math.max(0, ...others.map((other) => area(common(window, other)))) / area(window);
 }

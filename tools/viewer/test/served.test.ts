@@ -181,6 +181,19 @@ test('where all is looked at and there is no room for more, what came stays, and
   assert.equal(asked.length, requests);
 });
 
+test('who looks at a fifth of a full view gets more detail there, in parts that lie in one another, too', async () => {
+  const { view, settled } = served(30000, () => undefined, byBytes);
+  void view.run();
+  await settled();
+  view.setView([{ window: bounds, error: 0.05 }]);
+  await settled();
+  const at = { x: (bounds[0] + bounds[2]) / 2, y: (bounds[1] + bounds[3]) / 2 };
+  const before = certifiedAt(view.certified, [at])!.error;
+  view.setView([-0.27, -0.28, -0.29, -0.3].map((share) => ({ window: widened(bounds, bounds, share), error: 0.05 })));
+  await settled();
+  assert.ok(certifiedAt(view.certified, [at])!.error < before, `${certifiedAt(view.certified, [at])!.error} after ${before}`);
+});
+
 test('where there is room for less than is wanted, parts are about as fine as one another', async () => {
   const { view, settled } = served(30000, () => undefined, byBytes);
   void view.run();

@@ -135,7 +135,7 @@ test('windows are in sight where the picture may show a part of them, however la
   assert.ok(isSeen([west, south, east, north]));
   // All that lies to the west up to where the camera stands, behind it and beside: no pixel has any of it.
   assert.ok(!isSeen([west, south, 502300, 5003800]) && !isSeen([west, south, east, 5002500]));
-  // What is wanted is what is seen, in a valley far below the terrain's middle height, too.
+  // Parts that are wanted are those seen, in a valley far below the terrain's middle height, too.
   for (const [x, y] of [[503840, 5003840], [505400, 5003840], [503300, 5004400]]) {
     view.pose({ x, y, height: 300 + relief(x - 503840, y - 5003840), distance: 400, heading: 40, tilt: 55 });
     rest();
