@@ -4,7 +4,7 @@
 export { certifiedAt, certifiedWithin } from './certified.js';
 export { collectionAt, streamOf } from './collection.js';
 export { boundsOf, factNames, heightOf, onMap } from './facts.js';
-export { holds, windowAround } from './map_window.js';
+export { holds, widened, windowAround } from './map_window.js';
 export { none, triangleWords, vertexWords } from './mesh.js';
 export { toldBy } from './metadata.js';
 export { Problem, opened } from './requests.js';

@@ -5,6 +5,7 @@
 import type { MeshView } from 'ptin-decoder';
 import { heightOf, none, triangleWords, vertexWords } from 'ptin-decoder/values';
 import type { Frame } from './frame';
+import { type HeightCells, heightCellsOf } from './height_cells';
 import { type Spread, SurfaceRaster } from './surface_raster';
 import { extentOf, gridOf, type TriangleGrid } from './triangle_grid';
 import { kindsOf, land, water } from './water';
@@ -28,6 +29,7 @@ export interface DrawnMesh {
   /** The way out of each of them: 32767 for 1. */
   wallNormals: Int16Array;
   grid: TriangleGrid;
+  cells: HeightCells;
   /** Null without land. */
   spread: Spread | null;
   /** The extent of what is not void, in the scene: its least and its greatest x and y. */
@@ -46,8 +48,8 @@ export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
   const raster = new SurfaceRaster(positions, landCorners);
   return {
     positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
-    tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface), spread: raster.spread,
-    extent: extentOf(positions, surface),
+    tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface),
+    cells: heightCellsOf(positions, surface), spread: raster.spread, extent: extentOf(positions, surface),
   };
 }
 
@@ -56,8 +58,8 @@ export function surfaceEnd(parts: Uint32Array): number {
   return parts[parts.length - 2];
 }
 
-export function buffersOf({ positions, normals, corners, parts, tileExtents, walls, wallNormals, grid }: DrawnMesh): ArrayBuffer[] {
-  const all = [positions, normals, corners, parts, tileExtents, walls, wallNormals, grid.starts, grid.triangles];
+export function buffersOf({ positions, normals, corners, parts, tileExtents, walls, wallNormals, grid, cells }: DrawnMesh): ArrayBuffer[] {
+  const all = [positions, normals, corners, parts, tileExtents, walls, wallNormals, grid.starts, grid.triangles, cells.lows, cells.highs];
   return all.map((a) => a.buffer as ArrayBuffer);
 }
 

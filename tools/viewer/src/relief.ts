@@ -2,10 +2,12 @@
 //
 // The picture: sky, relief, plinth, edges, and the marks on it. Drawn only when something changed; rougher while it moves, where
 // the card is slow.
+import type { Window } from 'ptin-decoder';
 import { type DrawnMesh, edgesOf, surfaceEnd, tilesAcross } from './drawn_mesh';
 import { type Place, type Seen, Marks, pageColour } from './marks';
 import type { Frame } from './frame';
 import { drapeUnit, Program, rampUnit, slopeUnit, Smooth, texture, Vertices } from './gl';
+import { someBox } from './height_cells';
 import { heightStops, rampPixels, slopeStops } from './ramps';
 import { groundFragment, groundVertex, skyFragment, skyVertex, wallFragment, wallVertex } from './shaders';
 import { Camera, lengthOf, sum, type Triple } from './space';
@@ -131,9 +133,15 @@ export class Relief {
     ], quads(mesh.walls.length / 16));
     this.edges = null;
     this.under = new Ground(mesh.positions, mesh.corners, mesh.grid);
-    if (mesh.spread !== null && this.frame !== null) this.ramp = colouredFrom(mesh.spread, this.frame);
+    if (mesh.spread !== null && this.frame !== null && !this.areColoursKept) this.ramp = colouredFrom(mesh.spread, this.frame);
     this.draw();
   }
+
+  /** A height has the colour that it has now from here on, however much finer the mesh becomes. */
+  keepColours(): void {
+    this.areColoursKept = true;
+  }
+  private areColoursKept = false;
 
   /** The heights at both ends of the colours; null before there is a frame. */
   get colouredHeights(): readonly [low: number, high: number] | null {
@@ -149,6 +157,11 @@ export class Relief {
   /** The share of `way` from a place at which the ground is met, both without exaggeration; null where it is not. */
   meets(from: Triple, way: Triple): number | null {
     return this.under?.meets(from, way) ?? null;
+  }
+
+  /** Whether `test` holds for one of the boxes that hold the ground of an extent of the scene, where its z may be off by `slack`. */
+  someBox(extent: Window, slack: number, test: (least: Triple, most: Triple) => boolean): boolean {
+    return this.drawn !== null && someBox(this.drawn.cells, extent, slack, test);
   }
 
   set wireframe(on: boolean) {

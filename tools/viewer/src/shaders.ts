@@ -80,7 +80,8 @@ uniform vec4 drapeWindow;     // scene x, y, width, height; width 0: none
 const vec3 isolineColour = vec3(0.16, 0.1, 0.06);
 
 vec3 detailTint() {
-  if (shading == 2.0) return vec3(0.88, 0.88, 0.87);
+  // Slopes in full light have 1.3 times the light of a plain, and are not to be white.
+  if (shading == 2.0) return vec3(0.76, 0.76, 0.75);
   if (shading == 1.0) {
     vec3 flatNormal = normalize(cross(dFdx(vPlace), dFdy(vPlace)));
     float degrees = acos(clamp(abs(flatNormal.z), 0.0, 1.0)) * 57.29578;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Where the camera stands, how it moves, the permalink's part, and the detail that its picture shows. It stays above the ground.
-import type { Wanted, Window } from 'ptin-decoder';
-import { windowAround } from 'ptin-decoder/values';
+import type { Certified, Wanted, Window } from 'ptin-decoder';
+import { certifiedAt, widened, windowAround } from 'ptin-decoder/values';
 import type { Frame } from './frame';
 import type { Place } from './marks';
 import type { Projected } from './projected';
@@ -28,6 +28,8 @@ export interface Surface {
   groundAt(x: number, y: number): number | null;
   /** The share of a way at which the ground is met; null where it is not. */
   meets(from: Triple, way: Triple): number | null;
+  /** Whether `test` holds for one of the boxes that hold the ground of an extent, where its z may be off by `slack`. */
+  someBox(extent: Window, slack: number, test: (least: Triple, most: Triple) => boolean): boolean;
 }
 
 /** A point of the picture, from -1 to 1: to the right, up. */
@@ -305,12 +307,21 @@ export class View {
     this.changed();
   }
 
-  /** Which windows of the map are in the picture, or may be: whatever lies between the least and the greatest height there. */
-  seenWindows(frame: Frame): (window: Window) => boolean {
-    const { camera } = this;
-    const top = frame.relief * this.exaggeration;
-    return ([west, south, east, north]) =>
-      camera.mayMeet([frame.sceneX(west), frame.sceneY(south), 0], [frame.sceneX(east), frame.sceneY(north), top]);
+  /**
+   * Which windows of the map are in the picture, or may be: the terrain is as far from the ground of the picture as is certified there,
+   * and where nothing is it may be anywhere in the relief.
+   */
+  seenWindows(frame: Frame, certified: Certified): (window: Window) => boolean {
+    const { camera, factor, surface } = this;
+    return ([west, south, east, north]) => {
+      const extent: Window = [frame.sceneX(west), frame.sceneY(south), frame.sceneX(east), frame.sceneY(north)];
+      // Most windows are beyond a side of the picture at any height.
+      if (!camera.mayMeet([extent[0], extent[1], 0], [extent[2], extent[3], frame.relief * factor])) return false;
+      const deviation = certifiedAt(certified, [{ x: (west + east) / 2, y: (south + north) / 2 }])?.deviation ?? Infinity;
+      if (!(deviation * frame.scaleZ < frame.relief)) return true;
+      return surface.someBox(extent, deviation * frame.scaleZ, (least, most) =>
+        camera.mayMeet([least[0], least[1], least[2] * factor], [most[0], most[1], most[2] * factor]));
+    };
   }
 
   /** How far a place of the scene, without exaggeration, is from the camera. */
@@ -363,12 +374,14 @@ export class View {
 
   /**
    * The detail that the picture needs: for each octave of distance the part of the terrain that is at most so far, and the error that is
-   * `tolerance` pixels there. The coarsest part first.
+   * `tolerance` pixels there. The coarsest part first. `slack`: by how much the ground of the picture may be off in z; 0: nobody
+   * knows.
    */
-  wanted(pixels: number, tolerance: number): Wanted[] {
+  wanted(pixels: number, tolerance: number, slack = 0): Wanted[] {
     const { frame } = this;
     if (frame === null) return [];
-    const seen = this.seenPlaces(frame);
+    const met = this.seenPlaces(frame);
+    const seen = slack > 0 && met.length > 0 ? [...met, ...this.placesBeyond(met, frame, slack)] : met;
     const nearest = Math.min(...seen.map((s) => s.distance));
     const farthest = Math.max(...seen.map((s) => s.distance), nearest);
     const parts: Wanted[] = [];
@@ -384,10 +397,31 @@ export class View {
   }
 
   /**
+   * Places that no ray met and that the picture may show all the same, behind a ridge, say: they are as far as the farthest that was
+   * met, at least. Without them nothing better than the first coarse answer would be certified of all that may be in sight.
+   */
+  private placesBeyond(met: readonly SeenPlace[], frame: Frame, slack: number): SeenPlace[] {
+    const { camera, factor } = this;
+    const farthest = Math.max(...met.map((p) => p.distance));
+    const half: Window = [-frame.width / 2, -frame.depth / 2, frame.width / 2, frame.depth / 2];
+    const known = widened(windowAround(met), half, 1 / 8);
+    const beyond: SeenPlace[] = [];
+    this.surface.someBox(half, slack, (least, most) => {
+      const isKnown = least[0] >= known[0] && least[1] >= known[1] && most[0] <= known[2] && most[1] <= known[3];
+      if (isKnown || !camera.mayMeet([least[0], least[1], least[2] * factor], [most[0], most[1], most[2] * factor])) return false;
+      for (const [x, y] of [least, most]) {
+        beyond.push({ x, y, distance: Math.max(farthest, lengthOf(difference(camera.position, [x, y, most[2] * factor]))) });
+      }
+      return false;
+    });
+    return beyond;
+  }
+
+  /**
    * Places of the terrain under points of the picture, and how far they are: on the ground; where a ray meets none, since it goes through
    * a void or nothing is there yet, at its middle height.
    */
-  private seenPlaces(frame: Frame): Array<{ x: number; y: number; distance: number }> {
+  private seenPlaces(frame: Frame): SeenPlace[] {
     const places = [];
     const middle = 0.4 * frame.relief * this.exaggeration;
     const { camera, factor, surface } = this;
@@ -412,6 +446,13 @@ export class View {
     }
     return places;
   }
+}
+
+/** A place of the scene that is in the picture, and how far it is. */
+interface SeenPlace {
+  x: number;
+  y: number;
+  distance: number;
 }
 
 /** A pose moved over the ground: metres to the right of the picture, and away from the camera. */

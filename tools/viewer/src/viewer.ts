@@ -49,8 +49,12 @@ class Viewer {
   /** The status, with what is certified of all that is in sight. */
   private status: (Status & { certificate: Certificate | null }) | null = null;
   private readonly isServed: boolean;
+  /** Null where the terrain is a stream alone. */
+  private readonly service: Service | null;
   private linkTimer = 0;
   private viewTimer = 0;
+  /** The view that was asked for last counts how far the ground may be off. */
+  private isSlackWanted = false;
   private spokenState = '';
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
@@ -66,7 +70,9 @@ class Viewer {
   constructor(private readonly boot: Boot) {
     const canvas = part<HTMLCanvasElement>('relief');
     this.worker = boot.worker;
-    this.isServed = boot.source?.kind === 'collection';
+    const { source } = boot;
+    this.service = source?.kind === 'collection' ? new Service(source.service, source.id) : null;
+    this.isServed = this.service !== null;
     this.relief = new Relief(canvas);
     this.view = new View(this.relief.camera, this.relief);
     const isFramed = document.body.classList.contains('embed') && parent !== window;
@@ -91,7 +97,7 @@ class Viewer {
     const pointing = new Pointing(relief, panel, inquiry, () => {
       const { frame, status } = this;
       return frame === null || status === null ? null : { frame, certified: status.certified };
-    });
+    }, this.service);
     followKeys({
       canvas, view, panel, inquiry, pointing, isServed, isMapThere: () => this.baseMap.isThere,
       savePicture: () => { this.savePicture(); }, copyLink: () => { void this.copyLink(); }, moved: () => { this.moved(); },
@@ -147,8 +153,7 @@ class Viewer {
   }
 
   private madeOverlay(): Overlay {
-    const { source } = this.boot;
-    const service = source?.kind === 'collection' ? new Service(source.service, source.id) : null;
+    const { service } = this;
     return new Overlay({
       canvas: this.relief.canvas, frame: () => this.frame, project: ({ x, y, z }) => this.view.project(x, y, z),
       pick: (x, y) => this.relief.pick(x, y), distance: (place) => this.view.distanceTo(place),
@@ -243,10 +248,13 @@ class Viewer {
   private show(status: Status): void {
     this.status = { ...status, certificate: this.inSight(status) };
     this.showCertificate();
+    // The first view was asked for before anything was certified.
+    if (!this.isSlackWanted && this.slack > 0) this.wantView();
     const what = part('certified-what').textContent ?? '';
     if (status.isPreview === true) {
       speak(what);
     } else if (status.state !== this.spokenState && status.state !== 'loading') {
+      this.relief.keepColours();
       performance.mark('ptin-settled');
       speak(`${part('certified').textContent}, ${what}, ${bytes(status.bytes)} received`);
     }
@@ -256,7 +264,15 @@ class Viewer {
   /** The certificate of all that is in sight; null where nothing is known. */
   private inSight({ certified }: Status): Certificate | null {
     const { frame } = this;
-    return frame === null ? null : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame));
+    return frame === null ? null : certifiedWithin(certified, frame.bounds, this.view.seenWindows(frame, certified));
+  }
+
+  /** By how much the ground of the picture may be off anywhere, in the scene; 0 where nothing is certified yet. */
+  private get slack(): number {
+    const { frame, status } = this;
+    if (frame === null || status === null) return 0;
+    const slack = (certifiedWithin(status.certified, frame.bounds)?.deviation ?? 0) * frame.scaleZ;
+    return slack < frame.relief ? slack : 0;
   }
 
   private showCertificate(): void {
@@ -303,11 +319,17 @@ class Viewer {
   private moved(): void {
     this.relief.moves();
     this.keepLink();
+    this.wantView();
+  }
+
+  /** Asks for what is in sight, once the camera rests. */
+  private wantView(): void {
     if (!this.isServed) return;
     clearTimeout(this.viewTimer);
     this.viewTimer = window.setTimeout(() => {
-      const wanted = this.view.wanted(this.relief.canvas.clientHeight, tolerance);
-      this.send({ kind: 'view', wanted });
+      const { slack } = this;
+      this.isSlackWanted = slack > 0;
+      this.send({ kind: 'view', wanted: this.view.wanted(this.relief.canvas.clientHeight, tolerance, slack) });
     }, 150);
   }
 

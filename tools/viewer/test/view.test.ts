@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The camera over the terrain, without a picture.
+import type { Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Frame } from '../src/frame';
+import { heightCellsOf, someBox } from '../src/height_cells';
 import { Camera, lengthOf, type Triple } from '../src/space';
 import { usualExaggeration, View } from '../src/view';
 
@@ -17,6 +19,20 @@ function meets(from: Triple, way: Triple): number | null {
     if (z <= relief(x, y)) return share;
   }
   return null;
+}
+
+/** The hills as triangles of some 80 m, which are off by less than 25 m. */
+function hills(): { positions: Float32Array; corners: Uint32Array } {
+  const across = 97, size = 7680 / (across - 1);
+  const positions: number[] = [], corners: number[] = [];
+  for (let k = 0; k < across; ++k) {
+    for (let i = 0; i < across; ++i) {
+      const x = i * size - 3840, y = k * size - 3840, at = k * across + i;
+      positions.push(x, y, relief(x, y));
+      if (i + 1 < across && k + 1 < across) corners.push(at, at + 1, at + across, at + 1, at + across + 1, at + across);
+    }
+  }
+  return { positions: Float32Array.from(positions), corners: Uint32Array.from(corners) };
 }
 
 function framed(minHeight = 300, maxHeight = 1800): Frame {
@@ -36,7 +52,9 @@ function viewed(): { view: View; rest: () => number } {
   Object.assign(globalThis, { matchMedia: () => ({ matches: false }) });
   const camera = new Camera();
   Object.assign(camera, { width: 1100, height: 720 });
-  const view = new View(camera, { groundAt: relief, meets });
+  const { positions, corners } = hills();
+  const cells = heightCellsOf(positions, corners);
+  const view = new View(camera, { groundAt: relief, meets, someBox: (...asked) => someBox(cells, ...asked) });
   view.setFrame(framed());
   let hasChanged = false;
   view.changed = () => { hasChanged = true; };
@@ -119,7 +137,7 @@ test('windows are in sight where the picture may show a part of them, however la
   // Near the ground in the middle of the terrain, looking north.
   view.pose({ x: 503840, y: 5003840, height: 1000, distance: 900, heading: 0, tilt: 60 });
   rest();
-  const isSeen = view.seenWindows(framed());
+  const isSeen = view.seenWindows(framed(), []);
   const [west, south, east, north] = [500000, 5000000, 507680, 5007680];
   const { camera } = view;
   const shown = (x: number, y: number): boolean => [0, 500, 1000, 1500].some((z) => {
@@ -149,6 +167,52 @@ test('windows are in sight where the picture may show a part of them, however la
       assert.ok(atX > w - 60 && atX < e + 60 && atY > s - 60 && atY < n + 60, `${i}: ${atX} ${atY} in ${farthest.window}`);
     }
   }
+});
+
+test('windows whose ground is certified are in sight where that may be', () => {
+  const { view, rest } = viewed();
+  const bounds: Window = [500000, 5000000, 507680, 5007680];
+  const deviation = 40, size = 7680 / 24;
+  let seen = 0, mayBe = 0;
+  for (const [heading, tilt, distance] of [[0, 70, 900], [200, 50, 2500], [60, 80, 400], [330, 30, 1500]]) {
+    view.pose({ x: 503840, y: 5003840, height: 1000, distance, heading, tilt });
+    rest();
+    const isSeen = view.seenWindows(framed(), [{ window: bounds, error: 20, deviation }]);
+    const isAnyhow = view.seenWindows(framed(), []);
+    for (let i = 0; i < 24 * 24; ++i) {
+      const x = -3840 + size * (i % 24), y = -3840 + size * Math.floor(i / 24);
+      const window: Window = [503840 + x, 5003840 + y, 503840 + x + size, 5003840 + y + size];
+      if (isAnyhow(window)) ++mayBe;
+      if (isSeen(window)) ++seen;
+      // All that the ground may be there, in steps.
+      for (let step = 0; step < 75; ++step) {
+        const [px, py] = [x + size * (step % 5) / 4, y + size * (Math.floor(step / 5) % 5) / 4];
+        const at = view.camera.project([px, py, relief(px, py) + 0.6 * deviation * (Math.floor(step / 25) - 1)]);
+        if (at === null || Math.abs(at.x) > 1 || Math.abs(at.y) > 1) continue;
+        assert.ok(isSeen(window), `heading ${heading}: ${px} ${py}`);
+      }
+    }
+  }
+  assert.ok(seen < 0.9 * mayBe, `${seen} of ${mayBe}`);
+});
+
+test('the heights of cells hold those of all triangles there', () => {
+  const positions = Float32Array.from([0, 0, 0, 100, 0, 50, 0, 100, 20, 100, 100, 90, 40, 40, 7, 60, 60, 95, 50, 50, 12]);
+  // The last stands on its edge.
+  const corners = Uint32Array.from([0, 1, 2, 1, 3, 2, 4, 5, 6]);
+  const cells = heightCellsOf(positions, corners);
+  const within = (window: Window): [low: number, high: number] => {
+    let low = Infinity, high = -Infinity;
+    someBox(cells, window, 0, (least, most) => {
+      [low, high] = [Math.min(low, least[2]), Math.max(high, most[2])];
+      return false;
+    });
+    return [low, high];
+  };
+  assert.deepEqual(within([0, 0, 100, 100]), [0, 95]);
+  const [low, high] = within([10, 10, 11, 11]);
+  assert.ok(low <= 7 && low > 6 && high >= 7.7 && high < 9, `${low} ${high}: of a large triangle what lies in the cell`);
+  assert.deepEqual(within([49, 49, 51, 51]), [7, 95]);
 });
 
 test('lowland is drawn higher than mountains', () => {
