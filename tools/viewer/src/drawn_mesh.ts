@@ -16,7 +16,7 @@ export const tilesAcross = 8;
 export interface DrawnMesh {
   /** Three a vertex, metres in the scene. */
   positions: Float32Array;
-  /** Four a vertex, 32767 for 1: the normal of the land around it, weighted by angle, and whether it is on a ridge or in a hollow (-1). */
+  /** Four a vertex, 32767 for 1: the normal of the land around it, smoothed, and whether it is on a ridge or in a hollow (-1). */
   normals: Int16Array;
   /** Three a triangle: of land, tile by tile, then of water, then of voids. */
   corners: Uint32Array;
@@ -168,8 +168,9 @@ function inOrderOfUse(corners: Uint32Array, positions: Float32Array): Float32Arr
 
 /** Where a vertex has no land, up. */
 function drawnNormals(positions: Float32Array, corners: Uint32Array, open: Float32Array): Int16Array {
-  const sums = new Float32Array(positions.length);
-  for (let i = 0; i < corners.length; i += 3) addNormal(positions, sums, 3 * corners[i], 3 * corners[i + 1], 3 * corners[i + 2]);
+  const own = new Float32Array(positions.length);
+  for (let i = 0; i < corners.length; i += 3) addNormal(positions, own, 3 * corners[i], 3 * corners[i + 1], 3 * corners[i + 2]);
+  const sums = smoothed(own, positions, corners);
   const normals = new Int16Array(positions.length / 3 * 4);
   for (let v = 0; v < open.length; ++v) {
     const x = sums[3 * v], y = sums[3 * v + 1], z = sums[3 * v + 2];
@@ -181,6 +182,30 @@ function drawnNormals(positions: Float32Array, corners: Uint32Array, open: Float
     normals[4 * v + 3] = Math.round(32767 * open[v]);
   }
   return normals;
+}
+
+/**
+ * Sums around each vertex the directions of `own`, which become of length 1: a peak of one vertex, or a sliver, is no dark spot then.
+ * Large triangles count more, by their roots: across a plain they are as level as it is, whatever the slopes at its rim.
+ */
+function smoothed(own: Float32Array, p: Float32Array, corners: Uint32Array): Float32Array {
+  for (let at = 0; at < own.length; at += 3) {
+    const times = 1 / (Math.hypot(own[at], own[at + 1], own[at + 2]) || 1);
+    for (let k = 0; k < 3; ++k) own[at + k] *= times;
+  }
+  const sums = new Float32Array(own.length);
+  for (let i = 0; i < corners.length; i += 3) {
+    const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
+    const area = (p[b] - p[a]) * (p[c + 1] - p[a + 1]) - (p[b + 1] - p[a + 1]) * (p[c] - p[a]);
+    const size = Math.sqrt(Math.max(area, 0));
+    for (let k = 0; k < 3; ++k) {
+      const all = (own[a + k] + own[b + k] + own[c + k]) * size;
+      sums[a + k] += all;
+      sums[b + k] += all;
+      sums[c + k] += all;
+    }
+  }
+  return sums;
 }
 
 /** Adds a triangle's normal to those of its corners, by its angle there: long slivers do not outweigh what is beside them. */

@@ -8,7 +8,7 @@ import type { Status } from './messages';
 import { input, part } from './page';
 import type { Settings } from './permalink';
 import { gradientOf, heightStops, slopeStops } from './ramps';
-import type { Shading } from './relief';
+import type { Relief, Shading } from './relief';
 
 /** Errors that the slider tells apart: from a quarter of the relief down by this factor, then none. */
 const errorSpan = 1e4;
@@ -17,7 +17,7 @@ const previewNote = 'a preview, not certified';
 export class Panel {
   private frame: Frame | null = null;
   private timer = 0;
-  private coloured: readonly [low: number, high: number] | null = null;
+  private coloured: Relief['colours'] = null;
   private attribution = '';
   private isPreview = false;
   private mapCredit = '';
@@ -78,9 +78,8 @@ export class Panel {
     part('map-note').textContent = note;
   }
 
-  /** The heights at both ends of the colours. */
-  setColours(heights: readonly [low: number, high: number] | null): void {
-    this.coloured = heights;
+  setColours(colours: Relief['colours']): void {
+    this.coloured = colours;
     this.showLegend();
   }
 
@@ -180,10 +179,10 @@ export class Panel {
     const { shading } = this.settings;
     part('legend').hidden = shading === 'shade' || shading === 'map' || this.frame === null;
     const bar = part('legend').querySelector<HTMLElement>('i')!;
-    bar.style.background = gradientOf(shading === 'slope' ? slopeStops : heightStops);
+    bar.style.background = gradientOf(shading === 'slope' ? slopeStops : this.coloured?.stops ?? heightStops);
     if (this.frame === null) return;
     const { minHeight, maxHeight } = this.frame.facts;
-    const [low, high] = this.coloured ?? [minHeight, maxHeight];
+    const [low, high] = this.coloured?.heights ?? [minHeight, maxHeight];
     const told = shading === 'slope' ? ['0\u00b0', '30\u00b0', '60\u00b0']
       : [low, (low + high) / 2, high].map((h) => `${number(h, h > 999 ? 4 : 3)} ${this.sign}`);
     ['low', 'middle', 'high'].forEach((at, i) => { part(`legend-${at}`).textContent = told[i]; });

@@ -2,7 +2,7 @@
 //
 // Colours by height and by slope, as textures and as gradients of the legend.
 
-type Stop = readonly [share: number, r: number, g: number, b: number];
+export type Stop = readonly [share: number, r: number, g: number, b: number];
 
 /** Lowland greens over straw and ochre to rock and snow. */
 export const heightStops: readonly Stop[] = [
@@ -21,6 +21,12 @@ function colourAt(stops: readonly Stop[], share: number): [number, number, numbe
   const [a, b] = [stops[next - 1], stops[next]];
   const part = (share - a[0]) / (b[0] - a[0]);
   return [1, 2, 3].map((i) => a[i] + part * (b[i] - a[i])) as [number, number, number];
+}
+
+/** The colours up to a share, spread over all of it. */
+export function stopsUpTo(share: number, stops: readonly Stop[]): readonly Stop[] {
+  const below = stops.filter(([at]) => at < share).map(([at, r, g, b]): Stop => [at / share, r, g, b]);
+  return [...below, [1, ...colourAt(stops, share)]];
 }
 
 /** A row of pixels, red, green, blue and 255 each. */

@@ -8,7 +8,7 @@ import { type Place, type Seen, Marks, pageColour } from './marks';
 import type { Frame } from './frame';
 import { drapeUnit, Program, rampUnit, slopeUnit, Smooth, texture, Vertices } from './gl';
 import { someBox } from './height_cells';
-import { heightStops, rampPixels, slopeStops } from './ramps';
+import { heightStops, rampPixels, slopeStops, type Stop, stopsUpTo } from './ramps';
 import { groundFragment, groundVertex, skyFragment, skyVertex, wallFragment, wallVertex } from './shaders';
 import { Camera, lengthOf, sum, type Triple } from './space';
 import type { Spread } from './surface_raster';
@@ -72,6 +72,8 @@ export class Relief {
   private drapeWindow: readonly number[] = [0, 0, 0, 0];
   private air = { haze: [1, 1, 1], zenith: [1, 1, 1], below: [1, 1, 1], hazeDistance: 1 };
   private ramp: readonly [number, number] = [0, 1];
+  private stops = heightStops;
+  private rampTexture: WebGLTexture | null = null;
   private pending = false;
   /** The share of a side's pixels; less than 1 while the camera moves and the card is slow. */
   private sharpness = 1;
@@ -95,7 +97,7 @@ export class Relief {
     this.sky = new Program(gl, skyVertex, skyFragment);
     this.skyVertices = new Vertices(gl, [{ at: 0, numbers: new Float32Array([-1, -1, 3, -1, -1, 3]), size: 2 }], null);
     this.smooth = new Smooth(gl);
-    texture(gl, rampUnit, rampPixels(heightStops));
+    this.rampTexture = texture(gl, rampUnit, rampPixels(this.stops));
     texture(gl, slopeUnit, rampPixels(slopeStops));
     texture(gl, drapeUnit, new Uint8Array(4));
     this.plain.sampler('ramp', rampUnit);
@@ -133,8 +135,15 @@ export class Relief {
     ], quads(mesh.walls.length / 16));
     this.edges = null;
     this.under = new Ground(mesh.positions, mesh.corners, mesh.grid);
-    if (mesh.spread !== null && this.frame !== null && !this.areColoursKept) this.ramp = colouredFrom(mesh.spread, this.frame);
+    if (mesh.spread !== null && this.frame !== null && !this.areColoursKept) this.colourBy(mesh.spread, this.frame);
     this.draw();
+  }
+
+  private colourBy({ low, high }: Spread, frame: Frame): void {
+    this.ramp = [low, Math.max(high, low + 1e-3)];
+    this.stops = stopsUpTo(coloursFor(frame.heightAt(high) * frame.scaleZ), heightStops);
+    this.gl.deleteTexture(this.rampTexture);
+    this.rampTexture = texture(this.gl, rampUnit, rampPixels(this.stops));
   }
 
   /** A height has the colour that it has now from here on, however much finer the mesh becomes. */
@@ -143,10 +152,10 @@ export class Relief {
   }
   private areColoursKept = false;
 
-  /** The heights at both ends of the colours; null before there is a frame. */
-  get colouredHeights(): readonly [low: number, high: number] | null {
-    const { frame, ramp } = this;
-    return frame === null ? null : [frame.heightAt(ramp[0]), frame.heightAt(ramp[1])];
+  /** The colours, and the heights at both ends of them; null before there is a frame. */
+  get colours(): { stops: readonly Stop[]; heights: readonly [low: number, high: number] } | null {
+    const { frame, ramp, stops } = this;
+    return frame === null ? null : { stops, heights: [frame.heightAt(ramp[0]), frame.heightAt(ramp[1])] };
   }
 
   /** z of the picture's ground at a place of the scene, without exaggeration; null where there is none. */
@@ -459,11 +468,9 @@ export class Relief {
 /** Snow is above these heights, metres: on lower land the colours end below it. */
 const snowFrom = 700, snowAt = 2500;
 
-/** Scene z at both ends of the colours. */
-function colouredFrom({ low, high }: Spread, frame: Frame): readonly [number, number] {
-  const metres = frame.heightAt(high) * frame.scaleZ;
-  const share = 0.76 + 0.24 * Math.max(0, Math.min(1, (metres - snowFrom) / (snowAt - snowFrom)));
-  return [low, low + Math.max(high - low, 1e-3) / share];
+/** The share of the colours that land has which reaches up to a height. */
+function coloursFor(metres: number): number {
+  return 0.76 + 0.24 * Math.max(0, Math.min(1, (metres - snowFrom) / (snowAt - snowFrom)));
 }
 
 /** Corners of quads of four vertices each. */

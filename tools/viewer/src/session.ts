@@ -88,7 +88,9 @@ export class Session {
     const changed = drawn === null || drawn.decoder !== decoder || drawn.vertices !== mesh.vertexCount || drawn.numbering !== numbering;
     if (!changed) this.drawnCertified = certified;
     if (!changed || (!now && wait > 0)) {
-      this.say({ kind: 'status', status: this.status });
+      // An end is told with the mesh that it is the end of: until then the certificates are those of the mesh before.
+      const { status } = this;
+      this.say({ kind: 'status', status: changed ? { ...status, state: 'loading' } : status });
       // The host may send nothing for long after this.
       if (changed) this.later ??= setTimeout(() => { this.draw(true); }, wait);
       return;

@@ -175,7 +175,7 @@ class Viewer {
         this.firstVertices = 0;
         this.relief.setMesh(message.mesh);
         this.overlay.setMesh({ ...message.mesh, corners: message.mesh.corners.subarray(0, surfaceEnd(message.mesh.parts)) });
-        this.panel.setColours(this.relief.colouredHeights);
+        this.panel.setColours(this.relief.colours);
         this.firstSight(message.mesh, message.status);
         if (this.status === null) requestAnimationFrame(() => { performance.mark('ptin-first-picture'); });
         this.show(message.status);

@@ -29,8 +29,11 @@ test('a mesh that comes too soon after another is handed out later, though the h
     events!.grown();
     assert.deepEqual(told.map((m) => m.kind), ['terrain', 'mesh']);
     decoder.feed(bytes.subarray(bytes.length / 2));
+    view.progress.state = 'complete';
     events!.grown();
+    assert.equal((told[told.length - 1] as Extract<FromWorker, { kind: 'status' }>).status.state, 'loading', 'its last mesh is not told yet');
   });
+  assert.equal((told[told.length - 1] as Extract<FromWorker, { kind: 'mesh' }>).status.state, 'complete');
   const meshes = told.filter((m) => m.kind === 'mesh').length;
   events!.grown();
   assert.equal(told.filter((m) => m.kind === 'mesh').length, meshes, 'no mesh comes twice');

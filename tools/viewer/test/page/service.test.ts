@@ -35,6 +35,23 @@ test('a service', (t) => served(`hills=${store}`, async (address) => {
     assert.ok(Math.abs(await asked(`-${degrees[2]} ${degrees[1]})`) - Number(height)) < 2, 'half a metre aside at most');
   }));
 
+  await t.test('where the pointer stays, the height is that of the full terrain', () =>
+    onPage(`${address}viewer/index.html?collection=voids#error=20`, async (page) => {
+      await complete(page);
+      const place = (): Promise<string> => text(page, '#place');
+      let before = '';
+      await page.route(/\/position\?/, async (route) => {
+        before = await place();
+        await route.continue();
+      });
+      const [response] = await Promise.all([page.waitForResponse(/\/position\?/), page.mouse.move(640, 380)]);
+      assert.match(before, / \u00b1 /, 'that of the picture until then');
+      const answer = await response.json() as { exact: boolean; points: Array<{ height: number }> };
+      assert.ok(answer.exact);
+      await until(page, () => !document.querySelector('#place')!.textContent!.includes('\u00b1'));
+      assert.ok(Math.abs(Number(/^[\d.]+/.exec(await place())![0]) - answer.points[0].height) < 0.006, await place());
+    }));
+
   for (const name of names) {
     await t.test(`lengths, rows and lines of sight are the program's: ${name}`, async () => {
       const path = made(name).store;
