@@ -21,8 +21,8 @@ export interface Picture {
   pick(x: number, y: number): Place | null;
   /** How far a place is from the camera. */
   distance(place: Place): number;
-  /** The part of the terrain that is seen. */
-  window(): Window | null;
+  /** The parts of the terrain that are seen: all of it, and what is nearer. */
+  windows(): Window[];
   interval(): number;
 }
 
@@ -60,9 +60,8 @@ export class Overlay {
     if (frame === null || this.mesh === null) return;
     const { round } = this;
     this.write(frame);
-    const window = this.picture.window();
-    if (this.summits === null || window === null) return;
-    const found = await this.summits.within(window, frame.bounds);
+    if (this.summits === null) return;
+    const found = await this.summits.within(this.picture.windows(), frame.bounds);
     if (round !== this.round) return;
     const least = frame.facts.minHeight + 0.1 * (frame.facts.maxHeight - frame.facts.minHeight);
     this.peaks = found.filter((p) => p.height > least).map(({ x, y, height }) => ({

@@ -36,16 +36,18 @@ export class Peaks {
   /** @param highest  Asks the service; a refusal leaves the square without a peak. */
   constructor(private readonly highest: Highest) {}
 
-  /** The peaks of the squares that a window meets; stops where it is asked for another window meanwhile. */
-  async within(window: Window, bounds: Window): Promise<Array<MapPosition & { height: number }>> {
+  /** The peaks of the squares that windows meet; stops where it is asked for others meanwhile. */
+  async within(windows: readonly Window[], bounds: Window): Promise<Array<MapPosition & { height: number }>> {
     const round = ++this.round;
-    const squares = squaresIn(window, bounds);
+    const squares = new Map(windows.flatMap((window) => [...squaresIn(window, bounds)]));
     for (const [name, square] of squares) {
       if (this.known.has(name)) continue;
       const found = await this.highest(square).catch(() => null);
       this.known.set(name, found);
       if (round !== this.round) return [];
     }
-    return [...squares.keys()].flatMap((name) => this.known.get(name) ?? []);
+    const peaks = [...squares.keys()].flatMap((name) => this.known.get(name) ?? []);
+    // A peak of a large square is that of a smaller one in it, too.
+    return [...new Map(peaks.map((peak) => [`${peak.x} ${peak.y}`, peak])).values()];
   }
 }

@@ -157,7 +157,8 @@ class Viewer {
     return new Overlay({
       canvas: this.relief.canvas, frame: () => this.frame, project: ({ x, y, z }) => this.view.project(x, y, z),
       pick: (x, y) => this.relief.pick(x, y), distance: (place) => this.view.distanceTo(place),
-      window: () => this.view.wanted(this.relief.canvas.clientHeight, tolerance)[0]?.window ?? null,
+      // Far squares are large, so that what is within a quarter of the way would have few peaks.
+      windows: () => this.view.wanted(this.relief.canvas.clientHeight, tolerance).filter((_, i) => i % 2 === 0 && i < 4).map((w) => w.window),
       interval: () => this.panel.settings.interval,
     }, service === null ? null : new Peaks((window) => service.highest(window)));
   }

@@ -72,9 +72,11 @@ test('peaks are asked for once a square, and nearer ones of smaller squares', as
     ++asked;
     return window[0] === 0 ? Promise.reject(new Error('busy')) : Promise.resolve({ x: window[0] + 1, y: window[1] + 1, height: 7 });
   });
-  assert.equal((await peaks.within(bounds, bounds)).length, 12);
-  assert.equal((await peaks.within(bounds, bounds)).length, 12);
+  assert.equal((await peaks.within([bounds], bounds)).length, 12);
+  assert.equal((await peaks.within([bounds], bounds)).length, 12);
   assert.equal(asked, 16);
+  const both = await peaks.within([bounds, [400, 200, 500, 250]], bounds);
+  assert.ok(both.length > 12 && both.length < 12 + asked - 16, 'a corner of a small square is that of a large one, and comes once');
 });
 
 test('links ask what was asked', () => {
