@@ -246,6 +246,7 @@ TEST(IsolineProgram, RefusesWhatCannotBeAnswered) {
   refused({"--interval", "10", "--max-lines", "3"}, 7, "isolines, more than the limit of 3");
   refused({"--interval", "10", "--memory", "100K"}, 7, "KiB");
   refused({"--level", "1", "--interval", "1"}, 2, "excludes");
+  refused({"--interval", "1", "--polygons", "--by", "splits"}, 2, "excludes");
   const Outcome extension = run_ptin({"isoline", m.file, "--level", "1", "-o", "x.doc"});
   EXPECT_EQ(extension.status, 2);
   EXPECT_NE(extension.err.find(".gpkg"), std::string::npos);

@@ -240,7 +240,7 @@ void add_question(ask::Parameters& rows, IsolineOptions& options) {
   rows.add("polygons", &options.polygons, "",
            "Polygons between the levels, with elev_min and elev_max, instead of lines")
       .spelled("-p,--polygons")
-      .excluding("3d");
+      .excluding("3d by");
   add_output(rows, options.out,
              "The layer to write; its extension chooses the format: " + known_isoline_extensions() +
                  "; - is GeoJSON on stdout");
