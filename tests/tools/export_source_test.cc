@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -447,6 +448,10 @@ TEST_F(ExportType, LeavesNoVoidAHeightNorAHeightAVoid) {
     expect_refusal(exported({"--nodata", none}), 2, "no Int16 is");
   }
   EXPECT_EQ(exported({"--nodata", "77"}).status, 0);
+  std::filesystem::remove(made_);
+  // A height that were told as none would be lost.
+  expect_refusal(exported({"--nodata", "5"}), 2, "a pixel has the height 5,");
+  EXPECT_FALSE(std::filesystem::exists(made_));
   recipe.value = [](int x, int y) { return x == 0 ? (y == 0 ? -32768 : 32767) : 5.5 + x; };
   make(source_, recipe);
   build();

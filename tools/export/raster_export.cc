@@ -150,13 +150,14 @@ class RasterWriter {
   template <class T>
   void take_heights(std::span<const double> heights, T nodata, std::span<T> to) {
     double rounding = rounding_;
-    bool fits = true;
+    bool fits = true, is_lost = false;
     for (std::size_t x = 0; x < to.size(); ++x) {
       const double height = heights[x];
       const bool is_height = height == height;
       const bool holds = is_height && Rounding<T>::holds(height);
       fits = fits && (holds || !is_height);
       const T rounded = holds ? Rounding<T>::of(height) : nodata;
+      is_lost = is_lost || (holds && rounded == nodata);
       // Exact: the two numbers are nearly the same.
       const double off = holds ? std::abs(static_cast<double>(rounded) - height) : 0.0;
       rounding = off > rounding ? off : rounding;
@@ -164,6 +165,16 @@ class RasterWriter {
     }
     rounding_ = rounding;
     if (!fits) refuse_type(heights);
+    if (is_lost) refuse_nodata();
+  }
+  [[noreturn]] void refuse_nodata() const {
+    std::string message = "a pixel has the height ";
+    append_number(message, target_.nodata);
+    throw Error(ErrorCode::invalid_argument,
+                message +
+                    ", which --nodata says of pixels without surface: give it a number that "
+                    "no height is",
+                target_.path);
   }
   [[noreturn]] void refuse_type(std::span<const double> heights) const {
     const auto off = std::find_if(heights.begin(), heights.end(), [&](double h) {
