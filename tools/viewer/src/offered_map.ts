@@ -73,9 +73,10 @@ export class OfferedMap {
   private followNow(): void {
     const { relief, view, offered } = this;
     if (offered === null) return;
-    const top = offered.frame.relief * view.exaggeration, pixels = relief.canvas.clientHeight * Math.min(devicePixelRatio, 2);
+    const top = offered.frame.relief, mayMeet = relief.camera.sight(view.exaggeration);
+    const pixels = relief.canvas.clientHeight * Math.min(devicePixelRatio, 2);
     this.map?.follow({
-      mayMeet: (west, south, east, north) => relief.camera.mayMeet([west, south, 0], [east, north, top]),
+      mayMeet: (west, south, east, north) => mayMeet([west, south, 0], [east, north, top]),
       sharpness: (west, south, east, north) => {
         const [cameraX, cameraY] = relief.camera.position;
         const x = Math.max(west, Math.min(east, cameraX)), y = Math.max(south, Math.min(north, cameraY));

@@ -425,11 +425,11 @@ export class Relief {
     const { frame, camera, exaggeration } = this;
     if (frame === null) return [];
     const seen: Array<[distance: number, tile: number]> = [];
-    const top = frame.relief * exaggeration;
+    const mayMeet = camera.sight(exaggeration);
     for (let tile = 0; tile < tilesAcross * tilesAcross; ++tile) {
       if (parts[tile] === parts[tile + 1]) continue;
       const [west, south, east, north] = tileExtents.subarray(4 * tile, 4 * tile + 4);
-      if (!camera.mayMeet([west, south, 0], [east, north, top])) continue;
+      if (!mayMeet([west, south, 0], [east, north, frame.relief])) continue;
       seen.push([lengthOf(sum([(west + east) / 2, (south + north) / 2, 0], camera.position, -1)), tile]);
     }
     return seen.sort((a, b) => a[0] - b[0]).map(([, tile]) => tile);

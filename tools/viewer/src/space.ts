@@ -74,18 +74,18 @@ export class Camera {
     return { x: dot(way, this.right) / (depth * halfHeight * this.aspect), y: dot(way, this.up) / (depth * halfHeight) };
   }
 
-  /** Whether a box may be in the picture: it is not wholly beyond one of its sides. */
-  mayMeet(least: Triple, most: Triple): boolean {
+  /**
+   * Whether a box, whose z is drawn so many times as high, may be in the picture as the camera stands now: it is not wholly beyond one
+   * of its sides.
+   */
+  sight(exaggeration: number): (least: Triple, most: Triple) => boolean {
     const m = this.matrix;
-    for (const axis of [0, 1, 2]) {
-      for (const side of [-1, 1]) {
-        // Inside is where side * coordinate + w is positive; of the box the corner counts for which this is most.
-        const row = (i: number): number => side * m[4 * i + axis] + m[4 * i + 3];
-        let reach = row(3);
-        for (let i = 0; i < 3; ++i) reach += Math.max(row(i) * least[i], row(i) * most[i]);
-        if (reach < 0) return false;
-      }
-    }
-    return true;
+    // Inside is where x a + y b + z c + d is not negative; of a box the corner counts for which this is most.
+    const sides = [0, 1, 2].flatMap((axis) => [-1, 1].map((side) => {
+      const [a, b, c, d] = [0, 1, 2, 3].map((i) => side * m[4 * i + axis] + m[4 * i + 3]);
+      return { a, b, c: c * exaggeration, d };
+    }));
+    return (least, most) => sides.every(({ a, b, c, d }) =>
+      Math.max(a * least[0], a * most[0]) + Math.max(b * least[1], b * most[1]) + Math.max(c * least[2], c * most[2]) + d >= 0);
   }
 }

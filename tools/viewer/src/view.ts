@@ -312,15 +312,15 @@ export class View {
    * and where nothing is it may be anywhere in the relief.
    */
   seenWindows(frame: Frame, certified: Certified): (window: Window) => boolean {
-    const { camera, factor, surface } = this;
+    const { surface } = this;
+    const mayMeet = this.camera.sight(this.factor);
     return ([west, south, east, north]) => {
       const extent: Window = [frame.sceneX(west), frame.sceneY(south), frame.sceneX(east), frame.sceneY(north)];
       // Most windows are beyond a side of the picture at any height.
-      if (!camera.mayMeet([extent[0], extent[1], 0], [extent[2], extent[3], frame.relief * factor])) return false;
+      if (!mayMeet([extent[0], extent[1], 0], [extent[2], extent[3], frame.relief])) return false;
       const deviation = certifiedAt(certified, [{ x: (west + east) / 2, y: (south + north) / 2 }])?.deviation ?? Infinity;
       if (!(deviation * frame.scaleZ < frame.relief)) return true;
-      return surface.someBox(extent, deviation * frame.scaleZ, (least, most) =>
-        camera.mayMeet([least[0], least[1], least[2] * factor], [most[0], most[1], most[2] * factor]));
+      return surface.someBox(extent, deviation * frame.scaleZ, mayMeet);
     };
   }
 
@@ -402,13 +402,14 @@ export class View {
    */
   private placesBeyond(met: readonly SeenPlace[], frame: Frame, slack: number): SeenPlace[] {
     const { camera, factor } = this;
+    const mayMeet = camera.sight(factor);
     const farthest = Math.max(...met.map((p) => p.distance));
     const half: Window = [-frame.width / 2, -frame.depth / 2, frame.width / 2, frame.depth / 2];
     const known = widened(windowAround(met), half, 1 / 8);
     const beyond: SeenPlace[] = [];
     this.surface.someBox(half, slack, (least, most) => {
       const isKnown = least[0] >= known[0] && least[1] >= known[1] && most[0] <= known[2] && most[1] <= known[3];
-      if (isKnown || !camera.mayMeet([least[0], least[1], least[2] * factor], [most[0], most[1], most[2] * factor])) return false;
+      if (isKnown || !mayMeet(least, most)) return false;
       for (const [x, y] of [least, most]) {
         beyond.push({ x, y, distance: Math.max(farthest, lengthOf(difference(camera.position, [x, y, most[2] * factor]))) });
       }
