@@ -29,6 +29,7 @@ export interface DrawnMesh {
   /** The way out of each of them: 32767 for 1. */
   wallNormals: Int16Array;
   grid: TriangleGrid;
+  /** Of voids, too: the terrain's own borders of these may lie beside those of the mesh. */
   cells: HeightCells;
   /** Null without land. */
   spread: Spread | null;
@@ -49,7 +50,7 @@ export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
   return {
     positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
     tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface),
-    cells: heightCellsOf(positions, surface), spread: raster.spread, extent: extentOf(positions, surface),
+    cells: heightCellsOf(positions, corners), spread: raster.spread, extent: extentOf(positions, surface),
   };
 }
 

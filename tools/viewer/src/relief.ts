@@ -74,6 +74,7 @@ export class Relief {
   private ramp: readonly [number, number] = [0, 1];
   private stops = heightStops;
   private rampTexture: WebGLTexture | null = null;
+  private areColoursKept = false;
   private pending = false;
   /** The share of a side's pixels; less than 1 while the camera moves and the card is slow. */
   private sharpness = 1;
@@ -150,7 +151,6 @@ export class Relief {
   keepColours(): void {
     this.areColoursKept = true;
   }
-  private areColoursKept = false;
 
   /** The colours, and the heights at both ends of them; null before there is a frame. */
   get colours(): { stops: readonly Stop[]; heights: readonly [low: number, high: number] } | null {

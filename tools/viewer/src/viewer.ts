@@ -249,8 +249,11 @@ class Viewer {
   private show(status: Status): void {
     this.status = { ...status, certificate: this.inSight(status) };
     this.showCertificate();
-    // The first view was asked for before anything was certified.
-    if (!this.isSlackWanted && this.slack > 0) this.wantView();
+    // The first view was asked for before anything was certified. Messages come quicker than it waits, so it is asked for once.
+    if (!this.isSlackWanted && this.slack > 0) {
+      this.isSlackWanted = true;
+      this.wantView();
+    }
     const what = part('certified-what').textContent ?? '';
     if (status.isPreview === true) {
       speak(what);

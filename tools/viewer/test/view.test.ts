@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The camera over the terrain, without a picture.
-import type { Window } from 'ptin-decoder';
+import { widened, type Window } from 'ptin-decoder';
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Frame } from '../src/frame';
@@ -194,6 +194,30 @@ test('windows whose ground is certified are in sight where that may be', () => {
     }
   }
   assert.ok(seen < 0.9 * mayBe, `${seen} of ${mayBe}`);
+});
+
+test('what may be in sight is wanted, where no ray of the picture meets it, too', () => {
+  const { view, rest } = viewed();
+  const bounds: Window = [500000, 5000000, 507680, 5007680];
+  const deviation = 40, size = 7680 / 64;
+  let hidden = 0;
+  for (const [heading, tilt, distance] of [[0, 70, 900], [200, 50, 2500], [60, 80, 400], [330, 30, 1500]]) {
+    view.pose({ x: 503840, y: 5003840, height: 1000, distance, heading, tilt });
+    rest();
+    const isSeen = view.seenWindows(framed(), [{ window: bounds, error: 20, deviation }]);
+    const heldBy = (slack: number) => {
+      const parts = view.wanted(720, 0.6, slack).map((part) => widened(part.window, bounds, 1 / 8));
+      return (x: number, y: number): boolean => parts.some(([w, s, e, n]) => x >= w && x <= e && y >= s && y <= n);
+    };
+    const isWanted = heldBy(deviation), isMet = heldBy(0);
+    for (let i = 0; i < 64 * 64; ++i) {
+      const x = bounds[0] + size * (i % 64 + 0.5), y = bounds[1] + size * (Math.floor(i / 64) + 0.5);
+      if (!isSeen([x - 0.49 * size, y - 0.49 * size, x + 0.49 * size, y + 0.49 * size])) continue;
+      assert.ok(isWanted(x, y), `heading ${heading}: ${x} ${y}`);
+      if (!isMet(x, y)) ++hidden;
+    }
+  }
+  assert.ok(hidden > 50, `${hidden} cells that no ray meets`);
 });
 
 test('the heights of cells hold those of all triangles there', () => {
