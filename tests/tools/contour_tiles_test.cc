@@ -134,7 +134,7 @@ TEST(ContourTiles, OfNeighboursMeet) {
        {built(folder, "mountains_257.tif"), built(folder, "coast_257.tif")}) {
     const Contoured web(path);
     const double interval = web.interval();
-    for (int z = std::max(0, last_contour_zoom(web.pyramid) - 3);
+    for (int z = std::max(0, last_contour_zoom(web.pyramid) - 6);
          z <= last_contour_zoom(web.pyramid); ++z) {
       const TileRectangle r = web.pyramid.rectangles(z).front();
       const std::int64_t left = (r.min_x + r.max_x) / 2 - 1, top = (r.min_y + r.max_y) / 2 - 1;
@@ -167,7 +167,8 @@ TEST(ContourTiles, LieOnIsolinesOfTheirLevel) {
     const double metres = web.pyramid.globe().metres_per_height();
     const double interval = web.interval();
     std::size_t points = 0, beside = 0;
-    for (const int z : {last_contour_zoom(web.pyramid), last_contour_zoom(web.pyramid) - 2}) {
+    const int last = last_contour_zoom(web.pyramid);
+    for (const int z : {last, last - 3, last - 5}) {
       const TileRectangle r = web.pyramid.rectangles(z).front();
       const WebTile tile{z, (r.min_x + r.max_x) / 2, (r.min_y + r.max_y) / 2};
       const double girth = 2 * 6378137.0 * M_PI, step = girth / std::ldexp(4096.0, z);
@@ -183,7 +184,7 @@ TEST(ContourTiles, LieOnIsolinesOfTheirLevel) {
             }
           }
           LocateRequest request;
-          request.detail = web.pyramid.level(z + 1).detail;
+          request.detail = web.pyramid.level(std::min(z + 1, web.pyramid.finest_level())).detail;
           const LocateResult located = web.terrain.locate(around, request);
           for (std::size_t i = 0; i < line.size(); ++i) {
             double low = HUGE_VAL, high = -HUGE_VAL;
@@ -203,6 +204,17 @@ TEST(ContourTiles, LieOnIsolinesOfTheirLevel) {
     EXPECT_GT(points, 100U) << path;
     EXPECT_LE(beside, points / 100) << path;
   }
+}
+
+TEST(ContourTiles, HaveAnIntervalThatSuitsTheZoomAndTheRelief) {
+  EXPECT_EQ(contour_interval(9, 4000), 200);
+  EXPECT_EQ(contour_interval(9, 212), 50) << "five levels, not one";
+  EXPECT_EQ(contour_interval(9, 800), 200);
+  EXPECT_EQ(contour_interval(9, 799), 100);
+  EXPECT_EQ(contour_interval(15, 212), 20) << "that of the zoom";
+  EXPECT_EQ(contour_interval(6, 8), 2);
+  EXPECT_NEAR(contour_interval(14, 0.5), 0.1, 1e-12);
+  EXPECT_NEAR(contour_interval(14, 0), 0.01, 1e-12);
 }
 
 TEST(ContourTiles, RefuseAnIntervalOfTooManyLevels) {

@@ -450,7 +450,7 @@ TEST_F(ExportType, LeavesNoVoidAHeightNorAHeightAVoid) {
   EXPECT_EQ(exported({"--nodata", "77"}).status, 0);
   std::filesystem::remove(made_);
   // A height that were told as none would be lost.
-  expect_refusal(exported({"--nodata", "5"}), 2, "a pixel has the height 5,");
+  expect_refusal(exported({"--nodata", "-32767"}), 2, "a pixel has the height -32767,");
   EXPECT_FALSE(std::filesystem::exists(made_));
   recipe.value = [](int x, int y) { return x == 0 ? (y == 0 ? -32768 : 32767) : 5.5 + x; };
   make(source_, recipe);

@@ -61,6 +61,7 @@ TEST_F(Serve, ValidatesWhatClientsKeep) {
   EXPECT_NE(packed.header("etag"), etag);
   EXPECT_LT(packed.body.size(), first.body.size() / 2);
   EXPECT_EQ(get(target, "If-None-Match: " + packed.header("etag") + "\r\n").status, 304);
+  EXPECT_EQ(get(target, "Accept-Encoding: br, GZIP\r\n").body, packed.body);
   const HttpAnswer kept = get(target, "Accept-Encoding: gzip;q=0\r\n");
   EXPECT_EQ(kept.body, first.body);
   EXPECT_EQ(kept.header("server-timing"), "cache;desc=\"hit\"");

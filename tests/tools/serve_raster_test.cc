@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Windows as GeoTIFF and COG over HTTP.
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -152,6 +154,46 @@ TEST_F(Serve, TakesTheWindowAndThePixelsOfARasterAsOgcWritesThem) {
   EXPECT_NEAR(transform[1], -transform[5], transform[1] * 0.02);
 }
 
+// The terrain's outline is turned against degrees: a window at its corner lies within its extent, and a part
+// of it beside the terrain.
+TEST_F(Serve, GivesTheWindowThatWasAskedForInTheCrsOfTheRaster) {
+  const json box = get("/collections/mountains").json()["extent"]["spatial"]["bbox"][0];
+  const double west = box[0], south = box[1], size = 0.004;
+  const std::string corner = json(west + 1e-6).dump() + "," + json(south + 1e-6).dump() + "," +
+                             json(west + size).dump() + "," + json(south + size).dump();
+  const std::string query = "coverage?crs=CRS84&bbox=" + corner;
+  const HttpAnswer answer = get(in("mountains", query + "&scale-size=Lon(40),Lat(40)"));
+  const Received made(answer);
+  const ReadRaster raster = read_raster(made.path());
+  ASSERT_EQ(raster.values.size(), 1600U);
+  EXPECT_NEAR(raster.transform[0], west + 1e-6, 1e-12);
+  EXPECT_NEAR(raster.transform[3], south + size, 1e-12);
+  EXPECT_NEAR(raster.transform[1], (size - 1e-6) / 40, 1e-12);
+  const auto beside = static_cast<std::size_t>(
+      std::count(raster.values.begin(), raster.values.end(), raster.nodata));
+  EXPECT_GT(beside, 10U);
+  EXPECT_LT(beside, 1500U);
+  for (std::size_t i = 0; i < raster.values.size(); i += 37) {
+    const double lon =
+        raster.transform[0] + (static_cast<double>(i % 40) + 0.5) * raster.transform[1];
+    const double lat =
+        raster.transform[3] + (static_cast<double>(i / 40) + 0.5) * raster.transform[5];
+    const json point = get(in("mountains", "position?f=json&coords=POINT(" + json(lon).dump() +
+                                               "%20" + json(lat).dump() + ")"))
+                           .json()["points"][0];
+    if (point["height"].is_null()) {
+      EXPECT_EQ(raster.values[i], raster.nodata) << i;
+    } else {
+      EXPECT_NEAR(raster.values[i], point["height"].get<double>(), 1e-3) << i;
+    }
+  }
+  // As GDAL's driver OGCAPI asks.
+  const std::string as_gdal = "coverage?bbox=" + corner + "&scaleSize=Lat(40),Long(40)";
+  EXPECT_EQ(get(in("mountains", as_gdal)).body, answer.body);
+  EXPECT_NE(get(in("mountains", as_gdal + "&crs=native")).body, answer.body);
+  expect_nothing_left();
+}
+
 TEST_F(Serve, SaysWhichRasterItDoesNotGive) {
   const auto refused = [](const std::string& query, int status, const std::string& parameter) {
     const HttpAnswer answer = get(in("mountains", "coverage?") + query);
@@ -170,6 +212,7 @@ TEST_F(Serve, SaysWhichRasterItDoesNotGive) {
   refused("subset=Lat(34.3)", 400, "subset");
   refused("subset=Lat(34.3:34.4),Lat(34.3:34.4)", 400, "subset");
   refused("scale-size=Lat(0)", 400, "scale-size");
+  refused("scaleSize=Lat(0)", 400, "scaleSize");
   refused("width=0", 400, "width");
   refused("width=10&pixel-size=60", 400, "width");
   refused("crs=EPSG:99999", 400, "crs");

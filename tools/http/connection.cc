@@ -4,7 +4,6 @@
 #include "tools/http/connection.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -21,6 +20,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "tools/http/letters.h"
 #include "tools/http/partial_target.h"
 
 namespace ptin::http {
@@ -39,12 +39,6 @@ constexpr std::size_t kFirstBodyBytes = std::size_t{4} << 10;
 constexpr std::uint64_t kMostDroppedBody = std::uint64_t{64} << 10;
 /// The size of a chunk, and the ends of lines around it.
 constexpr std::uint64_t kChunkLine = 20;
-
-std::string lower(std::string_view text) {
-  std::string low(text);
-  for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return low;
-}
 
 }  // namespace
 
@@ -249,8 +243,9 @@ std::shared_ptr<Request> Connection::request_of_head() {
   request->method = std::string(head.method_string());
   request->target = std::string(head.target());
   for (const auto& field : head) {
-    request->headers.emplace_back(lower({field.name_string().data(), field.name_string().size()}),
-                                  std::string(field.value()));
+    request->headers.emplace_back(
+        lower_letters({field.name_string().data(), field.name_string().size()}),
+        std::string(field.value()));
   }
   if (is_of_proxy_) request->forwarded = forwarded_of(request->headers);
   const auto client = client_of(peer_, request->forwarded.client, host_.limits.trusted_proxies);
@@ -287,7 +282,7 @@ void Connection::check_head() {
     if (host_.drains) throw Problem(503, "the service ends; ask again").retry_after(1);
     host_.service.check(*request_);
     const auto coding = request_->header("content-encoding");
-    if (coding && lower(*coding) != "identity" && !parser_->is_done()) {
+    if (coding && lower_letters(*coding) != "identity" && !parser_->is_done()) {
       throw Problem(415, "the body comes packed; send it as it is, without Content-Encoding");
     }
   } catch (...) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/web_address.h"
+#include "tools/http/letters.h"
 
 namespace ptin::http {
 
@@ -17,12 +18,6 @@ std::string_view without_blanks(std::string_view text) noexcept {
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
   return text;
-}
-
-std::string lower_letters(std::string_view text) {
-  std::string low(text);
-  for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return low;
 }
 
 /// What stands in a list between separators that are in no quotes.

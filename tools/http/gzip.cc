@@ -7,6 +7,7 @@
 #include <zlib.h>
 
 #include "engine/error.h"
+#include "tools/http/letters.h"
 
 namespace ptin::http {
 
@@ -29,7 +30,10 @@ double weight_of(std::string_view parameters) {
 
 }  // namespace
 
-bool takes_gzip(std::string_view accept_encoding) {
+bool takes_gzip(std::string_view given) {
+  // Names of codings have letters of any case (RFC 9110, 8.4.1).
+  const std::string low = lower_letters(given);
+  std::string_view accept_encoding = low;
   double by_name = -1.0, by_star = 0.0;
   while (!accept_encoding.empty()) {
     const std::size_t end = std::min(accept_encoding.find(','), accept_encoding.size());

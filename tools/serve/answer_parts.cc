@@ -136,12 +136,18 @@ std::string address_of(const Asked& asked, std::string_view rest) {
   return (asked.request.is_secure ? "https://" : "http://") + std::string(host) + base + path;
 }
 
-http::Response answered(const Asked& asked, std::string text, std::string_view media,
-                        const QueryCost& cost, double certified_error, bool exact) {
+http::Response drawn(const Asked& asked, std::string text, std::string_view media,
+                     const QueryCost& cost) {
   http::Response response = text_response(std::move(text), media);
   const bool has_choice = asked.formats.size() > 1 && !asked.formats.front().name.empty();
   if (has_choice && !asked.question.has("f")) response.add("Vary", "Accept");
   add_cost(response, cost);
+  return response;
+}
+
+http::Response answered(const Asked& asked, std::string text, std::string_view media,
+                        const QueryCost& cost, double certified_error, bool exact) {
+  http::Response response = drawn(asked, std::move(text), media, cost);
   std::string error;
   append_json_number(error, certified_error);
   response.add("Ptin-Certified-Error", std::move(error));

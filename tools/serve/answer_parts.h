@@ -86,6 +86,9 @@ constexpr std::uint64_t engine_memory(std::uint64_t memory_bytes,
 /// certain it is, as Ptin-Certified-Error and Ptin-Exact; and whether the header Accept chose its format.
 [[nodiscard]] http::Response answered(const Asked& asked, std::string text, std::string_view media,
                                       const QueryCost& cost, double certified_error, bool exact);
+/// The same of what is drawn alone, and certified by nobody.
+[[nodiscard]] http::Response drawn(const Asked& asked, std::string text, std::string_view media,
+                                   const QueryCost& cost);
 template <typename Result>
 [[nodiscard]] http::Response answered(const Asked& asked, std::string text, std::string_view media,
                                       const Result& result) {

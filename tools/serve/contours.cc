@@ -69,13 +69,12 @@ http::Response answer_contours(const Asked& asked) {
   const std::optional<TileNumber> number =
       number_of_tile(asked.rest, asked.rest.ends_with(".pbf") ? ".pbf" : ".mvt");
   if (number && number->level <= last_contour_zoom(*pyramid)) {
-    std::optional<tools::Tile> tile = with_interval([&] {
+    std::optional<tools::ContourTile> tile = with_interval([&] {
       return tools::contour_tile(*pyramid, {static_cast<int>(number->level), number->x, number->y},
                                  question.interval, asked.limits);
     });
     if (tile) {
-      return answered(asked, std::move(tile->bytes), "application/vnd.mapbox-vector-tile",
-                      tile->cost, tile->error, false);
+      return drawn(asked, std::move(tile->bytes), "application/vnd.mapbox-vector-tile", tile->cost);
     }
   }
   throw http::Problem(404, "there is no such tile; tilejson.json tells zooms and bounds");

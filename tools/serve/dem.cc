@@ -71,7 +71,7 @@ std::string query_of(const tools::HeightTileStyle& style, const std::string& ver
 http::Response dem_tilejson(const Asked& asked, const tools::MercatorPyramid& pyramid,
                             const tools::HeightTileStyle& style) {
   Json json = tools::height_facts(pyramid, style);
-  json["tilejson"] = "3.0.0";
+  json["tilejson"] = "2.2.0";  // From 3.0.0 on there are vector layers.
   json["scheme"] = "xyz";
   json["name"] = asked.collection->id;
   json["tileSize"] = style.side;  // As MapLibre reads it.

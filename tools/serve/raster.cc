@@ -33,7 +33,8 @@ namespace {
 
 using http::Problem;
 
-constexpr const char *kPixelSize = "pixel-size", *kBoxCrs = "bbox-crs", *kSubsetCrs = "subset-crs";
+constexpr const char *kScaleSizeOfGdal = "scaleSize", *kPixelSize = "pixel-size",
+                     *kBoxCrs = "bbox-crs", *kSubsetCrs = "subset-crs";
 /// Pixels along a side that a client may ask for; the limit `pixels` is for all of them.
 constexpr std::uint64_t kMostAlongSide = 100'000'000;
 /// What the header Accept cannot choose, since it is looked at without parameters of types: `f` does.
@@ -76,6 +77,11 @@ void add_question(ask::Parameters& rows, RasterQuestion& question) {
                 "Columns and rows as OGC writes them, by axes, instead of width and height",
                 "Lon(512),Lat(512)")
       .excluding("width height pixel-size");
+  ask::add_text(rows, kScaleSizeOfGdal,
+                "The same as GDAL's driver OGCAPI writes it, instead of scale-size; it takes the "
+                "raster for CRS84, and so it is without crs",
+                "Lat(512),Long(512)")
+      .excluding("width height pixel-size scale-size");
   ask::add_text(rows, "subset",
                 "The window as OGC writes it, by axes, in the CRS of subset-crs, instead of bbox",
                 "Lon(-118.31:-118.3),Lat(34.34:34.35)")
@@ -179,7 +185,7 @@ std::optional<tools::SourceRaster> source_of(const Asked& asked, const RasterQue
   const bool has_choice = question.region.window || question.detail.tolerance ||
                           question.detail.vertices || !question.pixel_size.empty() ||
                           question.counts.given() || asked.question.has("subset") ||
-                          asked.question.has("scale-size");
+                          asked.question.has("scale-size") || asked.question.has(kScaleSizeOfGdal);
   if (has_choice) return std::nullopt;
   try {
     return tools::source_raster_of(asked.terrain(), asked.collection->crs);
@@ -228,9 +234,9 @@ Window window_of_subset(const Asked& asked, const Places& places) {
 
 /// The CRS that the raster is asked for in.
 Places places_of_raster(const Asked& asked) {
-  const std::string& name = asked.question.text("crs");
-  return {asked.collection->crs, name.empty() ? "native" : name, asked.collection->bounds,
-          asked.request.share};
+  std::string name = asked.question.text("crs");
+  if (name.empty()) name = asked.question.has(kScaleSizeOfGdal) ? "CRS84" : "native";
+  return {asked.collection->crs, name, asked.collection->bounds, asked.request.share};
 }
 
 /// Pixels of a raster; where the number has more than 64 bits one that no limit allows.
@@ -241,15 +247,16 @@ std::uint64_t pixel_count(std::int64_t columns, std::int64_t rows) {
 
 PixelCounts counts_of(const Asked& asked, const RasterQuestion& question) {
   PixelCounts counts = question.counts;
-  const std::string& text = asked.question.text("scale-size");
+  const char* const name = asked.question.has(kScaleSizeOfGdal) ? kScaleSizeOfGdal : "scale-size";
+  const std::string& text = asked.question.text(name);
   const auto put = [&](int axis, std::optional<std::uint64_t>& count) {
-    const auto part = part_for_axis(text, axis, "scale-size");
+    const auto part = part_for_axis(text, axis, name);
     if (!part) return;
     count = parse_number<std::uint64_t>(*part);
     if (count && *count > 0 && *count <= kMostAlongSide) return;
-    throw Problem(400, "\"" + tools::shown(*part) + "\" is no number of pixels").at("scale-size");
+    throw Problem(400, "\"" + tools::shown(*part) + "\" is no number of pixels").at(name);
   };
-  if (asked.question.has("scale-size")) {
+  if (asked.question.has(name)) {
     put(0, counts.width);
     put(1, counts.height);
   }
@@ -303,10 +310,26 @@ tools::WrittenRaster sample(const Asked& asked, const RasterQuestion& question,
   return tools::export_raster(asked.terrain(), request, target, {});
 }
 
-/// The window of a raster in another CRS: what was asked for in that CRS itself, within what holds the
-/// terrain.
+/// A window that was asked for in the raster's own CRS, within what holds the terrain there: to the digit, so
+/// that who places pixels by it is right, whatever outline the terrain has in it. None where it was
+/// asked for in another CRS, lies beside, or one of them across the antimeridian.
+std::optional<Window> window_as_asked(const Asked& asked, const RasterQuestion& question,
+                                      const Places& of_window, const Places& places) {
+  std::optional<Window> own = question.region.window;
+  if (asked.question.has("subset")) own = window_of_subset(asked, of_window);
+  if (!own || of_window.is_native() || of_window.uri() != places.uri()) return std::nullopt;
+  const std::optional<Window> all = places.from_terrain(asked.collection->bounds);
+  if (!all || own->min_x > own->max_x || all->min_x > all->max_x) return std::nullopt;
+  const Window both{std::max(all->min_x, own->min_x), std::max(all->min_y, own->min_y),
+                    std::min(all->max_x, own->max_x), std::min(all->max_y, own->max_y)};
+  if (both.min_x < both.max_x && both.min_y < both.max_y) return both;
+  return std::nullopt;
+}
+
+/// The window of a raster in another CRS.
 Window window_there(const Asked& asked, const RasterQuestion& question, const Places& places) {
   const Places of_window = places_of_window(asked);
+  if (const auto both = window_as_asked(asked, question, of_window, places)) return *both;
   const auto window = window_within_terrain(asked, question, of_window);
   std::optional<Window> there = places.from_terrain(window.value_or(asked.collection->bounds));
   if (!there) {

@@ -374,15 +374,16 @@ Response TerrainService::failed(const Request& request, const Error& error, http
                      "kind, " +
                          tools::human_bytes(
                              memory_of(match(request).endpoint->reserves, options_.question)) +
-                         "; ask for less: a smaller window, or a larger error. Whoever runs the "
+                         "; ask for less: a smaller window, a larger error, or fewer levels. "
+                         "Whoever runs the "
                          "service gives more with --limit question_memory=SIZE")
           .beyond("question_memory")
           .response();
     case ErrorCode::cancelled:
       if (why == http::GivenUp::kDeadline) {
         return Problem(status,
-                       "the answer takes longer than the service computes; ask for less: a "
-                       "smaller window, or a larger error")
+                       "the answer takes longer than the service computes; ask for less: a smaller "
+                       "window, a larger error, or fewer levels")
             .beyond("computing")
             .response();
       }

@@ -23,6 +23,9 @@ namespace {
 constexpr std::int64_t kTileExtent = 4096;  ///< Steps along a tile.
 constexpr std::int64_t kBuffer = 64;        ///< Steps beside it that lines go on.
 constexpr int kStepsLog2 = 12;
+constexpr int kZoomsOfFullTin =
+    4;  ///< Of the last zooms so many have it, each at its own interval.
+constexpr double kLeastLevels = 4.0, kLeastInterval = 0.01;
 constexpr std::int64_t kLinesToIndex = 5;
 constexpr double kMostLevelsOfTerrain = 1000.0;
 constexpr double kMostBend = 0.25;  ///< Steps that a segment may leave the map's straight line by.
@@ -30,9 +33,9 @@ constexpr int kMostDivisions = 16;
 /// The radius of the curve that a straight line of the map is on the world is larger, metres.
 constexpr double kLeastRadius = 1e6;
 
-/// A position on the lattice of a zoom.
+/// A position on the lattice of a zoom, from the corner of the tile.
 struct LatticePoint {
-  std::int64_t x = 0, y = 0;
+  std::int32_t x = 0, y = 0;
   friend bool operator==(const LatticePoint&, const LatticePoint&) = default;
 };
 using LatticeLine = std::vector<LatticePoint>;
@@ -46,8 +49,9 @@ class TileLines {
         steps_(std::ldexp(1.0, tile.z + kStepsLog2)),
         metres_(kMercatorGirth / steps_) {
     const std::int64_t column = pyramid.unrolled_column(tile);
-    low_ = {static_cast<double>(column * kTileExtent - kBuffer),
-            static_cast<double>(tile.y * kTileExtent - kBuffer)};
+    corner_x_ = column * kTileExtent;
+    corner_y_ = tile.y * kTileExtent;
+    low_ = {static_cast<double>(corner_x_ - kBuffer), static_cast<double>(corner_y_ - kBuffer)};
     high_ = {static_cast<double>((column + 1) * kTileExtent + kBuffer),
              static_cast<double>((tile.y + 1) * kTileExtent + kBuffer)};
   }
@@ -159,7 +163,9 @@ class TileLines {
   }
 
   void add_point(const MapPoint& p) {
-    const LatticePoint rounded{std::llround(p.x), std::llround(p.y)};
+    // What is shown is less than two tiles wide.
+    const LatticePoint rounded{static_cast<std::int32_t>(std::llround(p.x) - corner_x_),
+                               static_cast<std::int32_t>(std::llround(p.y) - corner_y_)};
     if (part_.empty() || !(part_.back() == rounded)) part_.push_back(rounded);
   }
 
@@ -170,9 +176,10 @@ class TileLines {
 
   const MercatorPyramid& pyramid_;
   const GlobePath& path_;
-  double steps_;         ///< Along the world.
-  double metres_;        ///< Of a step, along the equator.
-  MapPoint low_, high_;  ///< What is shown, steps.
+  double steps_;                      ///< Along the world.
+  double metres_;                     ///< Of a step, along the equator.
+  std::int64_t corner_x_, corner_y_;  ///< Of the tile, steps.
+  MapPoint low_, high_;               ///< What is shown, steps.
   LatticeLine part_;
   std::vector<std::pair<double, MapPoint>> stops_;
 };
@@ -229,13 +236,12 @@ std::uint32_t command_of(std::uint32_t id, std::size_t count) {
 }
 
 /// Lines as commands with differences of positions from the tile's corner.
-std::vector<std::uint32_t> geometry_of(const std::vector<LatticeLine>& lines,
-                                       const LatticePoint& corner) {
+std::vector<std::uint32_t> geometry_of(const std::vector<LatticeLine>& lines) {
   std::vector<std::uint32_t> commands;
-  LatticePoint cursor = corner;
+  LatticePoint cursor;
   const auto go_to = [&](const LatticePoint& p) {
-    commands.push_back(protozero::encode_zigzag32(static_cast<std::int32_t>(p.x - cursor.x)));
-    commands.push_back(protozero::encode_zigzag32(static_cast<std::int32_t>(p.y - cursor.y)));
+    commands.push_back(protozero::encode_zigzag32(p.x - cursor.x));
+    commands.push_back(protozero::encode_zigzag32(p.y - cursor.y));
     cursor = p;
   };
   for (const LatticeLine& line : lines) {
@@ -265,7 +271,7 @@ std::string value_of_flag(bool flag) {
 }
 
 /// The values of a layer: false, true, and then a height each.
-std::string vector_tile(const std::vector<TileContour>& contours, const LatticePoint& corner) {
+std::string vector_tile(const std::vector<TileContour>& contours) {
   if (contours.empty()) return {};
   std::string layer_bytes;
   {
@@ -278,7 +284,7 @@ std::string vector_tile(const std::vector<TileContour>& contours, const LatticeP
       const std::array<std::uint32_t, 4> tags{0, value++, 1, contour.is_index ? 1U : 0U};
       feature.add_packed_uint32(FeatureField::kTags, tags.begin(), tags.end());
       feature.add_enum(FeatureField::kType, kLineString);
-      const std::vector<std::uint32_t> geometry = geometry_of(contour.lines, corner);
+      const std::vector<std::uint32_t> geometry = geometry_of(contour.lines);
       feature.add_packed_uint32(FeatureField::kGeometry, geometry.begin(), geometry.end());
     }
     layer.add_string(LayerField::kKeys, "ele");
@@ -295,31 +301,44 @@ std::string vector_tile(const std::vector<TileContour>& contours, const LatticeP
   return bytes;
 }
 
+/// The TIN of a zoom's lines.
+const PixelLevel& level_of(const MercatorPyramid& pyramid, int zoom) {
+  return pyramid.level(std::min(zoom + 1, pyramid.finest_level()));
+}
+
+double relief_of(const Globe& globe) noexcept { return globe.max_height() - globe.min_height(); }
+
 }  // namespace
 
-double contour_interval(int zoom) noexcept {
+double contour_interval(int zoom, double relief) noexcept {
   constexpr std::array<double, 14> kIntervals{1000, 500, 200, 200, 100, 100, 50,
                                               50,   20,  20,  10,  5,   2,   1};
   constexpr int kFirst = 6, kLast = 13;
-  return kIntervals[static_cast<std::size_t>(std::clamp(zoom - kFirst, 0, kLast))];
+  const double usual = kIntervals[static_cast<std::size_t>(std::clamp(zoom - kFirst, 0, kLast))];
+  const double most = std::max(relief / kLeastLevels, kLeastInterval);
+  if (usual <= most) return usual;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  // A power of ten that is rounded upwards would leave none of the three.
+  for (const double times : {5.0, 2.0}) {
+    if (times * power <= most) return times * power;
+  }
+  return power;
 }
 
 int last_contour_zoom(const MercatorPyramid& pyramid) noexcept {
-  return pyramid.finest_level() - 1;
+  return pyramid.finest_level() - 2 + kZoomsOfFullTin;
 }
 
-std::optional<Tile> contour_tile(const MercatorPyramid& pyramid, const WebTile& tile,
-                                 std::optional<double> interval, const QueryLimits& limits) {
+std::optional<ContourTile> contour_tile(const MercatorPyramid& pyramid, const WebTile& tile,
+                                        std::optional<double> interval, const QueryLimits& limits) {
   if (tile.z > last_contour_zoom(pyramid) || !pyramid.has(tile.z, tile.x, tile.y)) {
     return std::nullopt;
   }
   const Globe& globe = pyramid.globe();
   const double metres = globe.metres_per_height();
-  const double apart = interval.value_or(contour_interval(tile.z));
+  const double apart = interval.value_or(contour_interval(tile.z, relief_of(globe)));
   const std::vector<std::int64_t> numbers = level_numbers(globe, apart);
-  const PixelLevel& level = pyramid.level(tile.z + 1);
-  Tile made;
-  made.error = level.error;
+  ContourTile made;
   const Globe::Lease path = globe.path();
   TileLines lines(pyramid, *path, tile);
   const std::optional<Window> window = lines.window();
@@ -331,7 +350,8 @@ std::optional<Tile> contour_tile(const MercatorPyramid& pyramid, const WebTile& 
   }
   request.region = *window;
   request.cuts = false;
-  request.detail = level.detail;
+  request.detail = level_of(pyramid, tile.z).detail;
+  // The other half is that of the lines in steps, and of the tile's bytes.
   request.limits = limits.share(1, 2);
   const Isolines isolines = pyramid.terrain().isolines(request);
   made.cost = isolines.cost;
@@ -349,27 +369,25 @@ std::optional<Tile> contour_tile(const MercatorPyramid& pyramid, const WebTile& 
     lines.add(line.points, contours.back().lines);
   }
   if (!contours.empty() && contours.back().lines.empty()) contours.pop_back();
-  made.bytes =
-      vector_tile(contours, {pyramid.unrolled_column(tile) * kTileExtent, tile.y * kTileExtent});
+  made.bytes = vector_tile(contours);
   return made;
 }
 
 nlohmann::json contour_facts(const MercatorPyramid& pyramid, std::optional<double> interval) {
   if (interval) static_cast<void>(level_numbers(pyramid.globe(), *interval));
-  nlohmann::json intervals = nlohmann::json::array(), errors = nlohmann::json::array();
+  nlohmann::json intervals = nlohmann::json::array();
   for (int z = 0; z <= last_contour_zoom(pyramid); ++z) {
-    intervals.push_back(interval.value_or(contour_interval(z)));
-    errors.push_back(pyramid.level(z + 1).error);
+    intervals.push_back(interval.value_or(contour_interval(z, relief_of(pyramid.globe()))));
   }
   nlohmann::json facts = {
       {"vector_layers",
        {{{"id", "contours"},
-         {"description", "Contours, higher ground to their right"},
-         {"fields",
-          {{"ele", "Number: height in metres"}, {"index", "Boolean: every fifth level"}}}}}},
+         {"description",
+          "Contours, higher ground to their right; ele: the height in metres, index: every fifth "
+          "level"},
+         {"fields", {{"ele", "Number"}, {"index", "Boolean"}}}}}},
       {"ptin:unit", "m"},
-      {"ptin:intervals", std::move(intervals)},
-      {"ptin:errors", std::move(errors)}};
+      {"ptin:intervals", std::move(intervals)}};
   facts.update(pyramid.place_facts(last_contour_zoom(pyramid)));
   return facts;
 }

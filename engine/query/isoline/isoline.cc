@@ -20,10 +20,19 @@ constexpr std::uint64_t kSmallestLimit = 1 << 20;
 
 /// Shares of the memory, in eighths. While tiles are traced it is that of the tiles, of the pieces,
 /// which cannot be put on disk, and of points. While lines are cut at a region, what the tiles have
-/// given back is that of the cut pieces, of their points and of the line at hand; where nothing is
+/// given back is that of the cut pieces, of as many points and of the line at hand; where nothing is
 /// cut, of the line alone.
-constexpr std::uint64_t kShareOfTiles = 4, kShareOfPieces = 3, kShareOfPoints = 1;
-constexpr std::uint64_t kShareOfCutPieces = 2, kShareOfCutLine = 1, kShareOfLine = 4;
+struct Shares {
+  std::uint64_t tiles, pieces, points, cut_pieces;
+};
+constexpr std::uint64_t kShareOfCutLine = 1;
+
+/// Points that cannot be put on disk either are most of what lines take: a line has few pieces.
+Shares shares_of(const IsolineRequest& request) {
+  if (!request.temporary_folder.empty()) return {4, 3, 1, 2};
+  const bool is_cut = request.region && request.cuts;
+  return is_cut ? Shares{4, 2, 2, 1} : Shares{2, 2, 4, 0};
+}
 
 std::uint64_t bytes_of_share(const IsolineRequest& request, std::uint64_t eighths) {
   return request.limits.share(eighths, 8).memory_bytes;
@@ -46,7 +55,8 @@ class IsolineExtraction {
         levels_(request.levels, store_.facts().heights),
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
-        result_(PointStore(bytes_of_share(request, kShareOfPoints), request.temporary_folder)) {
+        shares_(shares_of(request)),
+        result_(PointStore(bytes_of_share(request, shares_.points), request.temporary_folder)) {
     if (!request.region) return;
     region_.emplace(*request.region, store_.facts().map);
     if (!request.cuts) return;
@@ -90,9 +100,9 @@ class IsolineExtraction {
         levels_,
         detail_,
         region_ ? &*region_ : nullptr,
-        {bytes_of_share(request_, kShareOfTiles),
+        {bytes_of_share(request_, shares_.tiles),
          request_.threads <= 1 ? kTileBytesOfOneThread : kTileBytes, request_.threads},
-        bytes_of_share(request_, kShareOfPieces),
+        bytes_of_share(request_, shares_.pieces),
         request_.limits.stop};
     request.counts_vertices = request_.counts_vertices;
     TileTraces traces = trace(request, result_.points_, context_.cost);
@@ -113,7 +123,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > bytes_of_share(request_, clip_ ? kShareOfCutLine : kShareOfLine)) {
+    if (bytes > bytes_of_share(request_, clip_ ? kShareOfCutLine : shares_.tiles)) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +
@@ -125,7 +135,7 @@ class IsolineExtraction {
   }
 
   void cut_at_region() {
-    PointStore points(bytes_of_share(request_, kShareOfPoints), request_.temporary_folder);
+    PointStore points(bytes_of_share(request_, shares_.points), request_.temporary_folder);
     std::vector<IsolinePiece> pieces;
     JoinedLines lines;
     std::vector<MapPoint> line;
@@ -139,7 +149,7 @@ class IsolineExtraction {
         piece.ring = joined.ring && clipped.whole;
         piece.first = points.size();
         piece.count = static_cast<std::uint32_t>(part.size());
-        if ((pieces.size() + 1) * kBytesAPiece > bytes_of_share(request_, kShareOfCutPieces)) {
+        if ((pieces.size() + 1) * kBytesAPiece > bytes_of_share(request_, shares_.cut_pieces)) {
           throw Error(ErrorCode::resource_exhausted,
                       "the region cuts the isolines into more than " +
                           std::to_string(pieces.size()) +
@@ -173,6 +183,7 @@ class IsolineExtraction {
   std::function<ClippedParts(std::span<const MapPoint>)> clip_;  ///< At the region; none: nowhere.
   QueryContext context_;
   Detail detail_;
+  Shares shares_;
   Isolines result_;
 };
 

@@ -274,8 +274,12 @@ TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
   request.threads = 3;
   request.limits.memory_bytes = 64 << 20;  // enough for each
   EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
-  request.limits.memory_bytes = 2 << 20;
+  // Without a folder points have half of the memory, where no line is cut.
   request.temporary_folder.clear();
+  request.limits.memory_bytes = 2 << 20;
+  ASSERT_LT(whole.points() * sizeof(MapPoint), request.limits.memory_bytes / 2);
+  EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
+  request.limits.memory_bytes = 2 * whole.points() * sizeof(MapPoint) - 1;
   EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
 }
 
