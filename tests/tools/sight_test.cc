@@ -246,5 +246,40 @@ TEST(SightInDegrees, MeasuresAlongTheEllipsoid) {
   EXPECT_EQ(answer.at("verdict"), "hidden") << "the Earth's curvature, in metres";
 }
 
+/// Heights that are rounded move no border of a void: what stands between voids hides all the same.
+TEST(SightOverVoids, IsDecidedWhereHeightsAloneAreRounded) {
+  const TestFolder folder;
+  // Three squares with gaps between them: ground, a wall, ground; no step of heights holds such digits.
+  std::string obj;
+  for (int k = 0; k < 3; ++k) {
+    const std::string height = k == 1   ? "5.3333333333333333"
+                               : k == 0 ? "0.33333333333333331"
+                                        : "0.3141592653589793";
+    for (const auto& [x, y] :
+         {std::pair(0, 0), std::pair(10, 0), std::pair(10, 10), std::pair(0, 10)}) {
+      obj += "v " + std::to_string(20 * k + x) + " " + std::to_string(y) + " " + height + "\n";
+    }
+  }
+  for (const int first : {1, 5, 9}) {
+    const auto corner = [first](int i) { return " " + std::to_string(first + i); };
+    obj +=
+        "f" + corner(0) + corner(1) + corner(2) + "\nf" + corner(0) + corner(2) + corner(3) + "\n";
+  }
+  write_file(folder.file("walls.obj"), obj);
+  const std::string file = folder.file("walls.ptin");
+  testing::expect_done({"build", folder.file("walls.obj"), "-o", file, "-q"});
+  ASSERT_GT(answer_of({"info", file, "--json"}).at("base_error").get<double>(), 0.0);
+  for (const std::string way : {"stars", "splits"}) {
+    const json hidden =
+        answer_of({"sight", file, "5", "4", "2", "45", "6", "2", "--json", "--by", way});
+    EXPECT_EQ(hidden.at("verdict"), "hidden") << way;
+    EXPECT_NEAR(hidden.at("clearance").at("max").get<double>(), -3.0, 0.02) << way;
+    EXPECT_NEAR(hidden.at("void_length").get<double>(), std::hypot(40, 2) / 2, 1e-6) << way;
+    const json seen =
+        answer_of({"sight", file, "5", "4", "9", "45", "6", "9", "--json", "--by", way});
+    EXPECT_EQ(seen.at("verdict"), "visible") << way;
+  }
+}
+
 }  // namespace
 }  // namespace ptin::tools

@@ -36,6 +36,14 @@ void leave_out(double error, double deviation, Certificate& certificate) {
 
 }  // namespace
 
+double deviation_of_left_out(const StoreFacts& facts) {
+  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
+  const double rounding =
+      facts.heights.type == HeightType::int32 ? facts.heights.step / 2 : largest * 0x1p-24;
+  constexpr double kSlack = 1.001;  // the bound itself is rounded up
+  return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
+}
+
 Certificate certify_below(const StoreFile& store, double bound) {
   Certificate certificate = of_finest(store);
   if (!(bound >= 0)) {

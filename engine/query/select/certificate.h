@@ -53,4 +53,8 @@ class AppliedErrors {
 [[nodiscard]] Certificate certify_applied(const StoreFile& store,
                                           std::span<const PendingSplit> splits);
 
+/// How far the file's full TIN is from the source's because records were left out. 0 where heights
+/// alone were rounded: then the rounded heights are the terrain's, and its voids are the source's.
+[[nodiscard]] double deviation_of_left_out(const StoreFacts& facts);
+
 }  // namespace ptin

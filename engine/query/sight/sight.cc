@@ -93,8 +93,8 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.min_height = store_facts_.min_height;
   facts_.max_height = store_facts_.max_height;
   facts_.has_voids = !store_facts_.free_of_voids;
-  // A certified error of 0 does not settle the voids: they may differ between samples.
-  facts_.exact_settles = !facts_.has_voids || store_facts_.base_error == 0;
+  // A certified error of 0 does not settle the voids: they may differ between samples. Rounded heights move none.
+  facts_.exact_settles = !facts_.has_voids || deviation_of_left_out(store_facts_) == 0;
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   if (coarse_records > 0 && request_.verdict_only) {
     const double error = bound_exceeded_by(store.error_bins(), coarse_records);

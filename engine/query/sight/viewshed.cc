@@ -12,6 +12,7 @@
 #include "engine/query/living/floor_cells.h"
 #include "engine/query/living/floor_tin.h"
 #include "engine/query/refine/refine.h"
+#include "engine/query/select/certificate.h"
 #include "engine/query/select/detail.h"
 #include "engine/query/select/predicate.h"
 #include "engine/query/select/region.h"
@@ -123,16 +124,6 @@ class Certainty {
  private:
   Viewshed& seen_;
 };
-
-/// How far the file's full TIN is from the source's because records were left out. 0 where heights
-/// alone were rounded: then the rounded heights are the terrain's.
-double deviation_of_left_out(const StoreFacts& facts) {
-  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
-  const double rounding =
-      facts.heights.type == HeightType::int32 ? facts.heights.step / 2 : largest * 0x1p-24;
-  constexpr double kSlack = 1.001;  // the bound itself is rounded up
-  return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
-}
 
 /// Bytes of the arrays of a mesh, with what they have grown beyond it.
 std::uint64_t held_bytes(const Tin& tin) noexcept {

@@ -16,12 +16,15 @@ export class Frame {
   readonly scaleX: number;
   readonly scaleY: number;
   readonly scaleZ: number;
+  /** The unit of heights that nobody told is what it is taken for. */
+  readonly units: Units;
   /** The height that lies at z = 0. */
   readonly baseHeight: number;
   readonly isDegrees: boolean;
 
   /** @param lonLat  Degrees over a terrain that has none itself, for people. */
-  constructor(readonly facts: Facts, readonly units: Units, readonly earth: Earth, private readonly lonLat: LonLatNodes | null = null) {
+  constructor(readonly facts: Facts, units: Units, readonly earth: Earth, private readonly lonLat: LonLatNodes | null = null) {
+    this.units = units.height === 'unknown' && earth.metresPerHeight !== 1 ? { ...units, height: units.horizontal } : units;
     const f = facts;
     ({ x: this.middleX, y: this.middleY } = onMap(f, (f.minX + f.maxX) / 2, (f.minY + f.maxY) / 2));
     this.isDegrees = earth.isDegrees;

@@ -4,7 +4,7 @@
 import type { MapPosition } from 'ptin-decoder';
 import type { Sight, Station } from './answers';
 import { drawnSight } from './drawn_sight';
-import { bound, coordinates, count, height as heightText, interval, length as lengthText, metres, number, rounded, signOf } from './format';
+import { bound, coordinates, count, height as heightText, interval, length as lengthText, metres, number, roundBelow, rounded, signOf } from './format';
 import type { Frame } from './frame';
 import type { Answer, Certainty, FromWorker, Question, ToWorker } from './messages';
 import { colour, download, hide, part, speak, toast } from './page';
@@ -81,12 +81,16 @@ export class Inquiry {
   }
 
   choose(tool: Tool): void {
+    this.takeUp(tool);
+    if (tool === 'height' || tool === 'profile') toast(hints[tool]);
+    else this.showForm(hints[tool]);
+  }
+
+  private takeUp(tool: Tool): void {
     this.close();
     this.tool = tool;
     document.querySelector<HTMLInputElement>(`input[name=tool][value=${tool}]`)!.checked = true;
     this.makeForm(tool);
-    if (tool === 'height' || tool === 'profile') toast(hints[tool]);
-    else this.showForm(hints[tool]);
   }
 
   /** The question, as a link has it. */
@@ -106,7 +110,7 @@ export class Inquiry {
 
   /** A profile along a line that came from elsewhere. */
   profileAlong(line: MapPosition[], isLonLat: boolean): void {
-    this.choose('profile');
+    this.takeUp('profile');
     this.places = line;
     const [from, ...rest] = line;
     this.ask({ kind: 'profile', from, to: rest[rest.length - 1], via: rest.slice(0, -1), isLonLat });
@@ -121,10 +125,16 @@ export class Inquiry {
   private get fields(): readonly Field[] {
     const { tool } = this;
     if (tool === 'sight') return [...eyeFields, { name: 'frequency', label: 'Radio', unit: 'GHz', value: '' }];
-    if (tool === 'viewshed') return [...eyeFields, { name: 'radius', label: 'Radius', unit: 'km', value: 5 }];
+    if (tool === 'viewshed') return [...eyeFields, { name: 'radius', label: 'Radius', unit: 'km', value: this.usualRadius }];
     const frame = this.frame();
     if (tool !== 'area' || frame === null || part('viewshed-tool').hidden) return [];
     return [{ name: 'against', label: 'Volume above', unit: signOf(frame.units.height), value: rounded(frame.facts.minHeight, 4) }];
+  }
+
+  /** Kilometres, of so few of the terrain's own pixels that a service looks at all of them. */
+  private get usualRadius(): number {
+    const frame = this.frame();
+    return frame === null ? 5 : Math.min(5, roundBelow(150 * frame.facts.stepX * frame.scaleX / 1000));
   }
 
   private makeForm(tool: Tool): void {
@@ -204,7 +214,9 @@ export class Inquiry {
   take(message: Extract<FromWorker, { kind: 'answer' | 'refused' }>): void {
     if (message.ticket !== this.ticket) return;
     if (message.kind === 'refused') {
-      toast(message.message);
+      this.shownProfile = null;
+      this.write(titles[this.tool], 'No answer', message.message);
+      this.layOut(false);
       return;
     }
     const frame = this.frame();
@@ -332,7 +344,7 @@ export class Inquiry {
     const [low, high] = extentOf(known);
     const climb = climbOf(stations);
     this.write('Profile', lengthText(length, lengths),
-      `from ${heightText(low, d, sign)} to ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
+      `between ${heightText(low, d, sign)} and ${heightText(high, d, sign)}, up ${number(climb.up, 3)} ${sign}, ` +
       `down ${number(climb.down, 3)} ${sign}\n${certaintyNote(certainty, sign)}`);
     if (answer.isLonLat !== true || frame.isDegrees) this.drawGround(answer, frame, colour('mark'));
     this.plot(answer);

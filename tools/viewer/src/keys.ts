@@ -71,6 +71,6 @@ export function followKeys(keyed: Keyed): void {
     event.preventDefault();
     action();
     if (/^(Arrow|Enter|Page|Back)|^[-+=,.]$/.test(event.key)) keyed.pointing.aim();
-    if (!['?', 'Enter', 'Escape', 'Backspace'].includes(event.key)) keyed.moved();
+    if (!['?', 'Enter', 'Escape', 'Backspace', 'e', 'l'].includes(event.key)) keyed.moved();
   });
 }

@@ -148,7 +148,7 @@ function labelAt(at: Flat, flats: readonly Flat[], project: (place: Place) => Pr
 export function peakLabels(peaks: readonly Peak[], project: (place: Place) => Projected, sign: string): Label[] {
   return [...peaks].sort((a, b) => b.height - a.height).flatMap(({ place, height }): Label[] => {
     const at = project(place);
-    return at.visible ? [{ x: at.x, y: at.y, angle: 0, text: `${Math.round(height)} ${sign}`, kind: 'peak', of: place }] : [];
+    return at.visible ? [{ x: at.x, y: at.y, angle: 0, text: `${height < 20 ? Math.round(10 * height) / 10 : Math.round(height)} ${sign}`, kind: 'peak', of: place }] : [];
   });
 }
 

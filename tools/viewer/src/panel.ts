@@ -165,7 +165,7 @@ export class Panel {
       if (Number(input(key).value) !== s[key]) input(key).value = String(s[key]);
     }
     part('exaggeration-told').textContent = `${Number((s.exaggeration || 1).toFixed(1))}\u00d7`;
-    part('azimuth-told').textContent = `${compass(s.azimuth)} ${Math.round(s.azimuth)}\u00b0`;
+    part('azimuth-told').textContent = `${Math.round(s.azimuth)}\u00b0`;
     part('altitude-told').textContent = `${Math.round(s.altitude)}\u00b0`;
     part('error-told').textContent = s.error === 0 ? 'all' : `to \u00b1${number(s.error, 2)} ${sign}`;
     if (this.frame !== null) input('error').value = String(this.placeOf(s.error));
@@ -187,9 +187,4 @@ export class Panel {
       : [low, (low + high) / 2, high].map((h) => `${number(h, h > 999 ? 4 : 3)} ${this.sign}`);
     ['low', 'middle', 'high'].forEach((at, i) => { part(`legend-${at}`).textContent = told[i]; });
   }
-}
-
-/** The nearest of eight directions. */
-export function compass(degrees: number): string {
-  return ['N', 'NE', 'E', 'SE', 'S', 'SW', 'W', 'NW'][Math.round(degrees / 45) % 8];
 }

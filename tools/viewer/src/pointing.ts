@@ -22,6 +22,8 @@ const restsAfter = 160, staysAfter = 300;
 
 export class Pointing {
   private timer = 0;
+  /** The place of the picture that is pointed at; null: none. */
+  private at: { x: number; y: number } | null = null;
   /** The number of places that were told, and ended: an answer about an earlier one comes too late. */
   private told = 0;
 
@@ -46,8 +48,7 @@ export class Pointing {
     canvas.addEventListener('pointermove', (e) => {
       this.leave();
       part('crosshair').hidden = true;
-      if (e.pointerType === 'touch' || e.buttons !== 0) return;
-      this.timer = window.setTimeout(() => { this.tellPlace(e.clientX, e.clientY); }, restsAfter);
+      if (e.pointerType !== 'touch' && e.buttons === 0) this.pointAt(e.clientX, e.clientY);
     });
     canvas.addEventListener('pointerleave', () => {
       this.leave();
@@ -61,7 +62,19 @@ export class Pointing {
   /** The place is no longer pointed at. */
   private leave(): void {
     clearTimeout(this.timer);
+    this.at = null;
     ++this.told;
+  }
+
+  private pointAt(x: number, y: number): void {
+    this.leave();
+    this.at = { x, y };
+    this.timer = window.setTimeout(() => { this.tellPlace(x, y); }, restsAfter);
+  }
+
+  /** The camera moves: another place is pointed at. */
+  moved(): void {
+    if (this.at !== null) this.pointAt(this.at.x, this.at.y);
   }
 
   private tellPlace(x: number, y: number): void {
@@ -96,9 +109,8 @@ export class Pointing {
   /** Puts the cross-hair of the keys into the middle, and tells what is there. */
   aim(): void {
     part('crosshair').hidden = false;
-    this.leave();
     const { clientWidth, clientHeight } = this.relief.canvas;
-    this.timer = window.setTimeout(() => { this.tellPlace(clientWidth / 2, clientHeight / 2); }, restsAfter);
+    this.pointAt(clientWidth / 2, clientHeight / 2);
   }
 
   /** Asks about the middle of the picture. */

@@ -251,7 +251,8 @@ export class Relief {
     this.restTimer = window.setTimeout(() => { this.rests(); }, restAfter);
   }
 
-  private rests(): void {
+  /** Draws as sharp as can be. */
+  rests(): void {
     if (this.sharpness === 1) return;
     this.sharpness = 1;
     this.draw();

@@ -34,8 +34,8 @@ export class ServedView implements TerrainView {
   private leastError = 0;
   /** Errors are this many times those of the camera, where the vertices would be too many. */
   private coarser = 1;
-  /** The parts that were looked at when the receiver began; null: what it holds is not looked at any more. */
-  private lookedAt: Window[] | null;
+  /** The parts that were wanted since the receiver began; null: what it holds is not, or not so finely, looked at any more. */
+  private lookedAt: Wanted[] | null;
   private readonly budget: VertexBudget;
   private wake: (() => void) | null = null;
   /** Bytes of the next answer: less where the service has not the memory for more. */
@@ -57,7 +57,7 @@ export class ServedView implements TerrainView {
   ) {
     this.shown = this.received = new Received(module);
     this.budget = new VertexBudget(mostVertices, collection.limits?.held_vertices ?? Infinity);
-    this.lookedAt = [collection.bounds];
+    this.lookedAt = [{ window: collection.bounds, error: Infinity }];
   }
 
   get name(): string { return this.collection.title; }
@@ -84,8 +84,15 @@ export class ServedView implements TerrainView {
   setView(wanted: Wanted[]): void {
     // A window that sticks out by the last bit of a number would never be covered.
     this.wanted = wanted.map((w) => ({ window: widened(w.window, this.collection.bounds, 0), error: w.error }));
-    const windows = this.wanted.map((w) => w.window);
-    if (this.lookedAt?.some((window) => shareOf(window, windows) < 0.5) ?? false) this.lookedAt = null;
+    if (this.lookedAt?.some((held) => !this.isLookedAt(held)) ?? false) {
+      this.lookedAt = null;
+      // What another view had to make do with says nothing of this one.
+      this.coarser = 1;
+    }
+    const { lookedAt } = this;
+    // A part that is about one of those adds nothing.
+    const isNew = (w: Wanted): boolean => !lookedAt!.some((held) => shareOf(w.window, [held.window]) >= 0.5 && held.error <= 2 * w.error);
+    lookedAt?.push(...this.wanted.filter(isNew));
     this.isTooMuch = false;
     this.mostBytes = laterBytes;
     this.budget.recover();
@@ -98,8 +105,11 @@ export class ServedView implements TerrainView {
     const first: Wanted = { window: this.collection.bounds, error: Math.max(this.relief / 50, 1e-6) };
     for (;;) {
       if (!this.received.decoder.hasMesh) {
+        const asked = this.received;
         await this.bring(first, firstBytes);
-        if (!this.received.decoder.hasMesh && this.isTooMuch && first.error < this.relief) first.error *= 2;
+        // It was too much for the service, or for the page, which has begun anew.
+        const isTooFine = this.isTooMuch || this.received !== asked;
+        if (!this.received.decoder.hasMesh && isTooFine && first.error < this.relief) first.error *= 2;
         continue;
       }
       if (this.nextWanted() !== undefined && this.budget.isFull(verticesOf(this.received)) && this.makesDo()) continue;
@@ -125,6 +135,12 @@ export class ServedView implements TerrainView {
       if (question.kind === 'area' && error instanceof Problem && error.status === 404) return measuredInPlan(question, frame);
       throw error;
     }
+  }
+
+  /** A part that is held is in sight for the most part, and not far finer than it is wanted there. */
+  private isLookedAt({ window, error }: Wanted): boolean {
+    const there = this.wanted.filter((w) => shareOf(window, [w.window]) >= 0.5);
+    return there.length > 0 && error * mostUneven >= Math.min(...there.map((w) => w.error));
   }
 
   /** All that is held is looked at, about. */
@@ -160,7 +176,7 @@ export class ServedView implements TerrainView {
 
   private startAnew(): void {
     this.received = new Received(this.module);
-    this.lookedAt = this.wanted.map((w) => w.window);
+    this.lookedAt = [...this.wanted];
   }
 
   /**

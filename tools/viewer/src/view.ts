@@ -91,8 +91,12 @@ export class View {
     this.reset();
   }
 
-  /** Has another frame of the same terrain, a little more exact; the camera stays. */
-  replaceFrame(frame: Frame): void { this.frame = frame; }
+  /** Has another frame of the same terrain, a little more exact; the camera stays over its place on the map. */
+  replaceFrame(frame: Frame): void {
+    const { current } = this;
+    this.frame = frame;
+    if (current !== null) this.place(current);
+  }
 
   /** Goes where the ground fills the picture, which lies within an extent of the scene; `z`: its middle height. This is the home. */
   fillWith(extent: { west: number; south: number; east: number; north: number }, z: number): void {

@@ -39,6 +39,7 @@ class Viewer {
   private readonly inquiry: Inquiry;
   private readonly overlay: Overlay;
   private readonly compass: Compass;
+  private pointing: Pointing | null = null;
   private readonly baseMap: OfferedMap;
   private worker: Worker | null;
   /** For the Worker, until it is begun. */
@@ -98,6 +99,7 @@ class Viewer {
       const { frame, status } = this;
       return frame === null || status === null ? null : { frame, certified: status.certified };
     }, this.service);
+    this.pointing = pointing;
     followKeys({
       canvas, view, panel, inquiry, pointing, isServed, isMapThere: () => this.baseMap.isThere,
       savePicture: () => { this.savePicture(); }, copyLink: () => { void this.copyLink(); }, moved: () => { this.moved(); },
@@ -205,6 +207,8 @@ class Viewer {
     const { facts, units, earth, about } = message;
     const frame = this.frame = new Frame(facts, units, earth, about.lonLat);
     this.relief.setFrame(frame);
+    // Its picture has the terrain's own pixels. Of points and meshes these are the grid's steps: far too many.
+    if (400 * facts.stepX < 0.01 * (facts.maxX - facts.minX) * facts.stepX) part('viewshed-tool').hidden = true;
     const size = earth.size === null ? 'size not known' : `${metres(earth.size[0])} \u00d7 ${metres(earth.size[1])}`;
     const unknown = units.height !== 'unknown' ? ''
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
@@ -322,6 +326,7 @@ class Viewer {
   /** The camera moved. */
   private moved(): void {
     this.relief.moves();
+    this.pointing?.moved();
     this.keepLink();
     this.wantView();
   }
@@ -430,6 +435,7 @@ class Viewer {
 
   private savePicture(): void {
     const { canvas } = this.relief;
+    this.relief.rests();
     this.relief.draw();
     const { labels } = this.overlay;
     requestAnimationFrame(() => {

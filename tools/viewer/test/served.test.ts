@@ -194,6 +194,24 @@ test('who looks at a fifth of a full view gets more detail there, in parts that 
   assert.ok(certifiedAt(view.certified, [at])!.error < before, `${certifiedAt(view.certified, [at])!.error} after ${before}`);
 });
 
+test('who comes back from a near view sees as much as before', async () => {
+  const { view, settled } = served(30000, () => undefined, byBytes);
+  void view.run();
+  await settled();
+  const home: Wanted[] = [{ window: bounds, error: 0.8 }];
+  view.setView(home);
+  await settled();
+  const before = certifiedWithin(view.certified, bounds)!.error;
+  for (const error of [0.4, 0.1, 0.02]) {
+    view.setView([{ window: widened(bounds, bounds, -0.35), error }]);
+    await settled();
+  }
+  view.setView(home);
+  await settled();
+  const after = certifiedWithin(view.certified, bounds)!.error;
+  assert.ok(after <= 1.3 * before, `${after} after ${before}`);
+});
+
 test('where there is room for less than is wanted, parts are about as fine as one another', async () => {
   const { view, settled } = served(30000, () => undefined, byBytes);
   void view.run();

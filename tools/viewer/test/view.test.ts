@@ -132,6 +132,23 @@ test('the scene is projected as the matrix has it', () => {
   assert.equal(view.project(x, y, z / 3).visible, false, 'behind the camera');
 });
 
+test('a more exact frame of the terrain leaves the camera over its place on the map', () => {
+  const { view } = viewed();
+  const pose = { x: 501234.5, y: 5006543.25, height: 1000, distance: 900, heading: 40, tilt: 60 };
+  view.pose(pose);
+  const { facts, units, earth } = framed();
+  view.replaceFrame(new Frame(facts, units, { ...earth, scales: [{ y: 5000000, x: 1.003, perY: 1.0006 }] }));
+  const now = view.current!;
+  for (const [key, value] of Object.entries(pose)) assert.ok(Math.abs(now[key as keyof typeof now] - value) < 1e-6, `${key}: ${now[key as keyof typeof now]}`);
+});
+
+test('heights of a unit that nobody told are told in that for which they are taken', () => {
+  const { facts, earth } = framed();
+  const units = { horizontal: 'foot', height: 'unknown' };
+  assert.equal(new Frame(facts, units, { ...earth, metresPerHeight: 0.3048 }).units.height, 'foot');
+  assert.equal(new Frame(facts, units, earth).units.height, 'unknown', 'metres');
+});
+
 test('windows are in sight where the picture may show a part of them, however large they are', () => {
   const { view, rest } = viewed();
   // Near the ground in the middle of the terrain, looking north.
