@@ -87,7 +87,7 @@ test('what answers questions comes with the first of them, once, and again where
     await complete(page);
     assert.equal(fetched, 0, 'nothing is asked yet');
     await page.mouse.click(640, 380);
-    await until(page, () => /questions\.wasm/.test(document.getElementById('toast')!.textContent!));
+    await until(page, () => /questions\.wasm/.test(document.getElementById('answer-note')!.textContent!));
     assert.ok(await page.isHidden('#trouble'), 'the terrain stays as it is');
     for (const x of [640, 600]) {
       await page.mouse.click(x, 380);
