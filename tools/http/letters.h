@@ -9,6 +9,7 @@
 
 namespace ptin::http {
 
+/// The text with small letters; ptin sets no locale, so these are those of ASCII.
 [[nodiscard]] inline std::string lower_letters(std::string_view text) {
   std::string low(text);
   for (char& c : low) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -25,6 +25,8 @@ constexpr std::int64_t kBuffer = 64;        ///< Steps beside it that lines go o
 constexpr int kStepsLog2 = 12;
 constexpr int kZoomsOfFullTin =
     4;  ///< Of the last zooms so many have it, each at its own interval.
+/// Bytes of a point in its line, in those of the layer and of the tile, and a part of its level's commands.
+constexpr std::uint64_t kBytesOfPoint = 8 + 2 * 4 + 4;
 constexpr double kLeastLevels = 4.0, kLeastInterval = 0.01;
 constexpr std::int64_t kLinesToIndex = 5;
 constexpr double kMostLevelsOfTerrain = 1000.0;
@@ -43,9 +45,12 @@ using LatticeLine = std::vector<LatticePoint>;
 /// The parts of lines that a tile shows, in steps of the zoom's lattice from the world's corner.
 class TileLines {
  public:
-  TileLines(const MercatorPyramid& pyramid, const GlobePath& path, const WebTile& tile)
+  /// @param bytes  For what is kept of points, here and in the tile.
+  TileLines(const MercatorPyramid& pyramid, const GlobePath& path, const WebTile& tile,
+            std::uint64_t bytes)
       : pyramid_(pyramid),
         path_(path),
+        most_points_(bytes / kBytesOfPoint),
         steps_(std::ldexp(1.0, tile.z + kStepsLog2)),
         metres_(kMercatorGirth / steps_) {
     const std::int64_t column = pyramid.unrolled_column(tile);
@@ -166,7 +171,12 @@ class TileLines {
     // What is shown is less than two tiles wide.
     const LatticePoint rounded{static_cast<std::int32_t>(std::llround(p.x) - corner_x_),
                                static_cast<std::int32_t>(std::llround(p.y) - corner_y_)};
-    if (part_.empty() || !(part_.back() == rounded)) part_.push_back(rounded);
+    if (!part_.empty() && part_.back() == rounded) return;
+    if (++points_ > most_points_) {
+      throw Error(ErrorCode::resource_exhausted,
+                  "the tile has more than " + std::to_string(most_points_) + " points");
+    }
+    part_.push_back(rounded);
   }
 
   void end_part(std::vector<LatticeLine>& parts) {
@@ -176,6 +186,7 @@ class TileLines {
 
   const MercatorPyramid& pyramid_;
   const GlobePath& path_;
+  std::uint64_t most_points_, points_ = 0;
   double steps_;                      ///< Along the world.
   double metres_;                     ///< Of a step, along the equator.
   std::int64_t corner_x_, corner_y_;  ///< Of the tile, steps.
@@ -340,7 +351,7 @@ std::optional<ContourTile> contour_tile(const MercatorPyramid& pyramid, const We
   const std::vector<std::int64_t> numbers = level_numbers(globe, apart);
   ContourTile made;
   const Globe::Lease path = globe.path();
-  TileLines lines(pyramid, *path, tile);
+  TileLines lines(pyramid, *path, tile, limits.share(5, 16).memory_bytes);
   const std::optional<Window> window = lines.window();
   if (!window || numbers.empty()) return made;
 
@@ -351,8 +362,8 @@ std::optional<ContourTile> contour_tile(const MercatorPyramid& pyramid, const We
   request.region = *window;
   request.cuts = false;
   request.detail = level_of(pyramid, tile.z).detail;
-  // The other half is that of the lines in steps, and of the tile's bytes.
-  request.limits = limits.share(1, 2);
+  // The rest is that of the lines in steps, and of the tile's bytes.
+  request.limits = limits.share(11, 16);
   const Isolines isolines = pyramid.terrain().isolines(request);
   made.cost = isolines.cost;
   std::vector<TileContour> contours;

@@ -32,6 +32,7 @@ namespace ptin::tools {
 /// The last zoom that has tiles: three beyond that of the full TIN, where lines stand closer.
 [[nodiscard]] int last_contour_zoom(const MercatorPyramid& pyramid) noexcept;
 
+/// A vector tile, and what it cost.
 struct ContourTile {
   std::string bytes;  ///< Not compressed.
   QueryCost cost;

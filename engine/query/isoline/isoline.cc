@@ -27,11 +27,11 @@ struct Shares {
 };
 constexpr std::uint64_t kShareOfCutLine = 1;
 
-/// Points that cannot be put on disk either are most of what lines take: a line has few pieces.
+/// Points that cannot be put on disk either are most of what long lines take.
 Shares shares_of(const IsolineRequest& request) {
   if (!request.temporary_folder.empty()) return {4, 3, 1, 2};
   const bool is_cut = request.region && request.cuts;
-  return is_cut ? Shares{4, 2, 2, 1} : Shares{2, 2, 4, 0};
+  return is_cut ? Shares{4, 3, 1, 2} : Shares{2, 3, 3, 0};
 }
 
 std::uint64_t bytes_of_share(const IsolineRequest& request, std::uint64_t eighths) {
@@ -111,6 +111,14 @@ class IsolineExtraction {
     result_.tiles = traces.tiles;
   }
 
+  /// Where nothing is cut, a line has what tiles have given back, and what pieces and points have not taken.
+  [[nodiscard]] std::uint64_t room_for_a_line() const {
+    if (clip_) return bytes_of_share(request_, kShareOfCutLine);
+    const std::uint64_t points = std::min<std::uint64_t>(result_.points_.size() * sizeof(MapPoint),
+                                                         bytes_of_share(request_, shares_.points));
+    return request_.limits.memory_bytes - points - result_.pieces_.size() * kBytesAPiece;
+  }
+
   /// Checks that the longest line fits. Lines are joined and written in the memory that tiles have
   /// given back.
   void admit_lines() const {
@@ -123,7 +131,7 @@ class IsolineExtraction {
       longest = std::max(longest, points);
     }
     const std::uint64_t bytes = longest * kBytesAPointOut;
-    if (bytes > bytes_of_share(request_, clip_ ? kShareOfCutLine : shares_.tiles)) {
+    if (bytes > room_for_a_line()) {
       throw Error(
           ErrorCode::resource_exhausted,
           "the longest isoline has " + std::to_string(longest) + " points, which take " +

@@ -36,12 +36,16 @@ void leave_out(double error, double deviation, Certificate& certificate) {
 
 }  // namespace
 
-double deviation_of_left_out(const StoreFacts& facts) {
-  const double largest = std::max(std::abs(facts.min_height), std::abs(facts.max_height));
-  const double rounding =
-      facts.heights.type == HeightType::int32 ? facts.heights.step / 2 : largest * 0x1p-24;
-  constexpr double kSlack = 1.001;  // the bound itself is rounded up
-  return facts.base_deviation <= kSlack * rounding ? 0.0 : facts.base_deviation;
+bool leaves_records_out(const StoreFacts& facts) {
+  const double left = std::max(facts.base_error, facts.base_deviation);
+  const double of_floats =
+      std::max(std::abs(facts.min_height), std::abs(facts.max_height)) * 0x1p-24;
+  const bool has_codes = facts.heights.type == HeightType::int32;
+  const double rounding = has_codes ? facts.heights.step / 2 : of_floats;
+  constexpr double kSlack = 1.001;  // the bounds themselves are rounded up
+  // Coarser steps are those of the source, whose heights they hold: what is told was left out.
+  const bool is_rounding = rounding <= kSlack * of_floats && left <= kSlack * rounding;
+  return left > 0 && !is_rounding;
 }
 
 Certificate certify_below(const StoreFile& store, double bound) {

@@ -53,8 +53,10 @@ class AppliedErrors {
 [[nodiscard]] Certificate certify_applied(const StoreFile& store,
                                           std::span<const PendingSplit> splits);
 
-/// How far the file's full TIN is from the source's because records were left out. 0 where heights
-/// alone were rounded: then the rounded heights are the terrain's, and its voids are the source's.
-[[nodiscard]] double deviation_of_left_out(const StoreFacts& facts);
+/// Whether the file's full TIN may be another than the source's because records were left out. Where
+/// heights alone were rounded, as those of doubles are, the rounded ones are the terrain's, and its
+/// voids are the source's: both bounds are no larger than that rounding then, which is finer than that
+/// of floats. A build that leaves out no more than so little counts as rounding, too.
+[[nodiscard]] bool leaves_records_out(const StoreFacts& facts);
 
 }  // namespace ptin

@@ -94,7 +94,7 @@ SightSolver::Impl::Impl(const OpenedTerrain& terrain, SightRequest request,
   facts_.max_height = store_facts_.max_height;
   facts_.has_voids = !store_facts_.free_of_voids;
   // A certified error of 0 does not settle the voids: they may differ between samples. Rounded heights move none.
-  facts_.exact_settles = !facts_.has_voids || deviation_of_left_out(store_facts_) == 0;
+  facts_.exact_settles = !facts_.has_voids || !leaves_records_out(store_facts_);
   facts_.final_settles = facts_.exact_settles && (!facts_.has_voids || finest.complete);
   if (coarse_records > 0 && request_.verdict_only) {
     const double error = bound_exceeded_by(store.error_bins(), coarse_records);

@@ -141,12 +141,13 @@ class ViewshedSearch {
         request_(request),
         context_(request.limits, store_.path()),
         detail_(request.detail, terrain.record_source(), context_),
-        left_out_(deviation_of_left_out(store_.facts())) {}
+        leaves_out_(leaves_records_out(store_.facts())),
+        left_out_(leaves_out_ ? store_.facts().base_deviation : 0.0) {}
 
   Viewshed run() {
     const bool is_coarse = detail_.is_asked() && !detail_.certificate().complete;
     refine_mesh(is_coarse);
-    const bool leaves_open = is_coarse || left_out_ > 0;
+    const bool leaves_open = is_coarse || leaves_out_;
     results_held_ = leaves_open && std::isfinite(left_out_) ? 2 : 1;
     Viewshed result = sweep({});
     if (leaves_open) {
@@ -231,6 +232,7 @@ class ViewshedSearch {
   QueryContext context_;
   Detail detail_;
   Tin tin_;
+  bool leaves_out_;  ///< Records, from the file.
   double left_out_;  ///< Deviation of the file's full TIN from the source's.
   double slope_ = 0;
   /// Results at once: that of the plain sweep, and of a biased one.

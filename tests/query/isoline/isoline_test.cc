@@ -274,13 +274,19 @@ TEST(Isolines, DoNotDependOnTilesOrTemporaryFiles) {
   request.threads = 3;
   request.limits.memory_bytes = 64 << 20;  // enough for each
   EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
-  // Without a folder points have half of the memory, where no line is cut.
+  // Without a folder points have three eighths of the memory, where no line is cut.
   request.temporary_folder.clear();
   request.limits.memory_bytes = 2 << 20;
-  ASSERT_LT(whole.points() * sizeof(MapPoint), request.limits.memory_bytes / 2);
+  ASSERT_LT(whole.points() * sizeof(MapPoint), request.limits.memory_bytes / 8 * 3);
   EXPECT_TRUE(listing(whole) == listing(isolines(terrain.tin, request)));
-  request.limits.memory_bytes = 2 * whole.points() * sizeof(MapPoint) - 1;
-  EXPECT_THROW(static_cast<void>(isolines(terrain.tin, request)), Error);
+  request.levels = random_levels(random, terrain.hierarchy, 28);
+  request.limits.memory_bytes = 1 << 20;
+  try {
+    static_cast<void>(isolines(terrain.tin, request));
+    ADD_FAILURE() << "was not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::resource_exhausted) << error.message();
+  }
 }
 
 /// What is crossed does not fit though the records do: tiles are halved for it, and when that does

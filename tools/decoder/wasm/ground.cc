@@ -43,10 +43,11 @@ Ground ground() { return ground_of(told(), geodesic_length); }
 }  // namespace ptin::viewer
 
 // NOLINTBEGIN(bugprone-reserved-identifier): the name by which the C library calls it.
-/// Sine and cosine of angles beyond 2^20 turns: the C library's own takes 1200 bits of 2 / pi, which no page should fetch for
+/// Sine and cosine of angles beyond 2^20 quarter turns: the C library's own takes 1200 bits of 2 / pi, which no page should fetch for
 /// angles on the Earth. Not a number, as of an infinite one.
-extern "C" int __rem_pio2_large(double*, double* rest, int, int, int) {
-  rest[0] = rest[1] = std::numeric_limits<double>::quiet_NaN();
+extern "C" int __rem_pio2_large(double*, double* rest, int, int, int precision) {
+  rest[0] = std::numeric_limits<double>::quiet_NaN();
+  if (precision > 0) rest[1] = rest[0];
   return 0;
 }
 // NOLINTEND(bugprone-reserved-identifier)

@@ -6,6 +6,7 @@ import type { MeshView } from 'ptin-decoder';
 import { heightOf, none, triangleWords, vertexWords } from 'ptin-decoder/values';
 import type { Frame } from './frame';
 import { type HeightCells, heightCellsOf } from './height_cells';
+import type { Triple } from './space';
 import { type Spread, SurfaceRaster } from './surface_raster';
 import { extentOf, gridOf, type TriangleGrid } from './triangle_grid';
 import { kindsOf, land, water } from './water';
@@ -29,12 +30,13 @@ export interface DrawnMesh {
   /** The way out of each of them: 32767 for 1. */
   wallNormals: Int16Array;
   grid: TriangleGrid;
-  /** Of voids, too: the terrain's own borders of these may lie beside those of the mesh. */
   cells: HeightCells;
   /** Null without land. */
   spread: Spread | null;
   /** The extent of what is not void, in the scene: its least and its greatest x and y. */
   extent: { west: number; south: number; east: number; north: number };
+  /** The highest vertex of what is not void; null without any. */
+  summit: Triple | null;
 }
 
 /** Cost: linear. */
@@ -50,8 +52,14 @@ export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
   return {
     positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
     tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface),
-    cells: heightCellsOf(positions, corners), spread: raster.spread, extent: extentOf(positions, surface),
+    cells: heightCellsOf(positions, surface, corners.subarray(surface.length), frame.relief), spread: raster.spread, extent: extentOf(positions, surface), summit: summitOf(positions, surface),
   };
+}
+
+function summitOf(positions: Float32Array, corners: Uint32Array): Triple | null {
+  let at = -1;
+  for (const v of corners) if (at < 0 || positions[3 * v + 2] > positions[at + 2]) at = 3 * v;
+  return at < 0 ? null : [positions[at], positions[at + 1], positions[at + 2]];
 }
 
 /** Where corners of land and water end. */

@@ -20,14 +20,21 @@ export interface HeightCells {
   highs: Float32Array;
 }
 
-/** Cost: linear in triangles and in the cells that they touch. */
-export function heightCellsOf(positions: Float32Array, corners: Uint32Array): HeightCells {
-  const { west, south, east, north } = extentOf(positions, corners);
+/**
+ * The surface's corners, and those of voids: where a mesh has a void, the terrain may have ground of any height up to `relief`.
+ * Cost: linear in triangles and in the cells that they touch.
+ */
+export function heightCellsOf(positions: Float32Array, surface: Uint32Array, voids: Uint32Array, relief: number): HeightCells {
+  const ends = [surface, voids].filter((c) => c.length > 0).map((c) => extentOf(positions, c));
+  const west = Math.min(...ends.map((e) => e.west)), south = Math.min(...ends.map((e) => e.south));
+  const east = Math.max(...ends.map((e) => e.east)), north = Math.max(...ends.map((e) => e.north));
   const cells: HeightCells = {
     west, south, width: Math.max((east - west) / across, 1e-6), depth: Math.max((north - south) / across, 1e-6),
     lows: new Float32Array(across * across).fill(Infinity), highs: new Float32Array(across * across).fill(-Infinity),
   };
-  for (let t = 0; t < corners.length; t += 3) addTriangle(cells, positions, 3 * corners[t], 3 * corners[t + 1], 3 * corners[t + 2]);
+  for (const [corners, range] of [[surface, null], [voids, [0, relief]]] as const) {
+    for (let t = 0; t < corners.length; t += 3) addTriangle(cells, positions, 3 * corners[t], 3 * corners[t + 1], 3 * corners[t + 2], range);
+  }
   return cells;
 }
 
@@ -56,14 +63,20 @@ function cellsFrom(low: number, high: number): [first: number, last: number] {
   return [cell(low), cell(high)];
 }
 
-/** Widens the cells below a triangle by what its plane has there: a long triangle of a slope is not as high everywhere as its top. */
-function addTriangle({ west, south, width, depth, lows, highs }: HeightCells, p: Float32Array, a: number, b: number, c: number): void {
-  const low = Math.min(p[a + 2], p[b + 2], p[c + 2]), high = Math.max(p[a + 2], p[b + 2], p[c + 2]);
+/**
+ * Widens the cells below a triangle by a range, or by what its plane has there: a long triangle of a slope is not as high everywhere
+ * as its top.
+ */
+function addTriangle(
+  { west, south, width, depth, lows, highs }: HeightCells, p: Float32Array, a: number, b: number, c: number,
+  range: readonly [low: number, high: number] | null,
+): void {
+  const [low, high] = range ?? [Math.min(p[a + 2], p[b + 2], p[c + 2]), Math.max(p[a + 2], p[b + 2], p[c + 2])];
   const left = Math.min(p[a], p[b], p[c]), right = Math.max(p[a], p[b], p[c]);
   const foot = Math.min(p[a + 1], p[b + 1], p[c + 1]), top = Math.max(p[a + 1], p[b + 1], p[c + 1]);
   const [firstColumn, lastColumn] = cellsFrom((left - west) / width, (right - west) / width);
   const [firstRow, lastRow] = cellsFrom((foot - south) / depth, (top - south) / depth);
-  const plane = planeOf(p, a, b, c);
+  const plane = range === null ? planeOf(p, a, b, c) : null;
   for (let row = firstRow; row <= lastRow; ++row) {
     for (let column = firstColumn; column <= lastColumn; ++column) {
       const cell = row * across + column;

@@ -131,10 +131,10 @@ export class Inquiry {
     return [{ name: 'against', label: 'Volume above', unit: signOf(frame.units.height), value: rounded(frame.facts.minHeight, 4) }];
   }
 
-  /** Kilometres, of so few of the terrain's own pixels that a service looks at all of them. */
+  /** Kilometres, of so few of a raster's own pixels that a service looks at all of them, and a part of any terrain. */
   private get usualRadius(): number {
     const frame = this.frame();
-    return frame === null ? 5 : Math.min(5, roundBelow(150 * frame.facts.stepX * frame.scaleX / 1000));
+    return frame === null ? 5 : Math.min(5, roundBelow(Math.max(150 * frame.facts.stepX * frame.scaleX, 0.02 * frame.width) / 1000));
   }
 
   private makeForm(tool: Tool): void {

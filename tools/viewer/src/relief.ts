@@ -149,7 +149,7 @@ export class Relief {
 
   /** A height has the colour that it has now from here on, however much finer the mesh becomes. */
   keepColours(): void {
-    this.areColoursKept = true;
+    this.areColoursKept = this.drawn !== null && this.drawn.spread !== null;
   }
 
   /** The colours, and the heights at both ends of them; null before there is a frame. */

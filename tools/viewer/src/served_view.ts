@@ -40,6 +40,8 @@ export class ServedView implements TerrainView {
   private wake: (() => void) | null = null;
   /** Bytes of the next answer: less where the service has not the memory for more. */
   private mostBytes = laterBytes;
+  /** The last answer was more than may be held. */
+  private hadNoRoom = false;
   /** The service has not the memory for all that is wanted. */
   private isTooMuch = false;
   private bytes = 0;
@@ -105,10 +107,9 @@ export class ServedView implements TerrainView {
     const first: Wanted = { window: this.collection.bounds, error: Math.max(this.relief / 50, 1e-6) };
     for (;;) {
       if (!this.received.decoder.hasMesh) {
-        const asked = this.received;
+        this.hadNoRoom = false;
         await this.bring(first, firstBytes);
-        // It was too much for the service, or for the page, which has begun anew.
-        const isTooFine = this.isTooMuch || this.received !== asked;
+        const isTooFine = this.isTooMuch || this.hadNoRoom;
         if (!this.received.decoder.hasMesh && isTooFine && first.error < this.relief) first.error *= 2;
         continue;
       }
@@ -210,6 +211,7 @@ export class ServedView implements TerrainView {
       held.giveUp({ window: this.collection.bounds, error: 0 });
       return;
     }
+    this.hadNoRoom = true;
     const looked = this.wanted.find((w) => w.window === window)?.error ?? error;
     if (this.isLean) this.coarser = 1.5 * Math.max(this.coarser, error / looked);
     this.startAnew();

@@ -44,6 +44,8 @@ const leastSteps = 150;
 const mostTilt = 86;
 /** The view of the whole terrain: north at the upper left, so that its depth is seen. */
 const homeHeading = 345, homeTilt = 56;
+/** What a home view without the terrain's summit is worth less: as much as a tenth of the picture without ground. */
+const withoutSummit = 0.1;
 /** The place looked at is no farther from the middle, in extents of the terrain. */
 const mostAside = 0.6;
 /** Milliseconds of a flight. */
@@ -98,8 +100,11 @@ export class View {
     if (current !== null) this.place(current);
   }
 
-  /** Goes where the ground fills the picture, which lies within an extent of the scene; `z`: its middle height. This is the home. */
-  fillWith(extent: { west: number; south: number; east: number; north: number }, z: number): void {
+  /**
+   * Goes where the ground fills the picture, which lies within an extent of the scene, and has its summit; `z`: its middle height. This
+   * is the home.
+   */
+  fillWith(extent: { west: number; south: number; east: number; north: number }, z: number, summit: Triple | null = null): void {
     const { frame } = this;
     if (frame === null) return;
     const x = (extent.west + extent.east) / 2, y = (extent.south + extent.north) / 2;
@@ -114,7 +119,9 @@ export class View {
           x: frame.mapX(x), y: frame.mapY(y), height: frame.heightAt(z), distance, heading: homeHeading, tilt,
         }, 0, ahead * whole);
         this.place(pose);
-        const merit = this.fullness(z * this.factor) + 0.36 * Math.log(distance / whole);
+        const top = summit === null ? null : this.camera.project([summit[0], summit[1], summit[2] * this.factor]);
+        const hasSummit = summit === null || (top !== null && Math.abs(top.x) < 0.95 && Math.abs(top.y) < 0.9);
+        const merit = this.fullness(z * this.factor) + 0.36 * Math.log(distance / whole) - (hasSummit ? 0 : withoutSummit);
         if (merit > best) [best, this.home] = [merit, pose];
       }
     }

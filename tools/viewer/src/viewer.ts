@@ -56,6 +56,7 @@ class Viewer {
   private viewTimer = 0;
   /** The view that was asked for last counts how far the ground may be off. */
   private isSlackWanted = false;
+  private isViewAsked = false;
   private spokenState = '';
   /** A trouble is shown that may mend by itself. */
   private isTroubled = false;
@@ -207,8 +208,6 @@ class Viewer {
     const { facts, units, earth, about } = message;
     const frame = this.frame = new Frame(facts, units, earth, about.lonLat);
     this.relief.setFrame(frame);
-    // Its picture has the terrain's own pixels. Of points and meshes these are the grid's steps: far too many.
-    if (400 * facts.stepX < 0.01 * (facts.maxX - facts.minX) * facts.stepX) part('viewshed-tool').hidden = true;
     const size = earth.size === null ? 'size not known' : `${metres(earth.size[0])} \u00d7 ${metres(earth.size[1])}`;
     const unknown = units.height !== 'unknown' ? ''
       : ` \u00b7 unit of heights unknown, taken for ${earth.metresPerHeight === 1 ? 'metres' : 'that of the map'}`;
@@ -231,12 +230,12 @@ class Viewer {
   }
 
   /** Once enough is there to tell the relief: shows it high enough, and has it fill the picture, unless the link says otherwise. */
-  private firstSight({ spread, extent }: DrawnMesh, { vertices, state }: Status): void {
+  private firstSight({ spread, extent, summit }: DrawnMesh, { vertices, state }: Status): void {
     const { frame } = this;
     if (this.isSighted || frame === null || spread === null || (vertices < enoughToTell && state === 'loading')) return;
     this.isSighted = true;
     if (this.panel.settings.exaggeration === 0) this.panel.set('exaggeration', usualExaggeration(frame, spread));
-    this.view.fillWith(extent, spread.low + 0.3 * (spread.high - spread.low));
+    this.view.fillWith(extent, spread.low + 0.3 * (spread.high - spread.low), summit);
     this.poseOfLink();
     this.moved();
     this.followLink();
@@ -262,7 +261,7 @@ class Viewer {
     if (status.isPreview === true) {
       speak(what);
     } else if (status.state !== this.spokenState && status.state !== 'loading') {
-      this.relief.keepColours();
+      if (this.isViewAsked || !this.isServed) this.relief.keepColours();
       performance.mark('ptin-settled');
       speak(`${part('certified').textContent}, ${what}, ${bytes(status.bytes)} received`);
     }
@@ -338,6 +337,7 @@ class Viewer {
     this.viewTimer = window.setTimeout(() => {
       const { slack } = this;
       this.isSlackWanted = slack > 0;
+      this.isViewAsked = true;
       this.send({ kind: 'view', wanted: this.view.wanted(this.relief.canvas.clientHeight, tolerance, slack) });
     }, 150);
   }

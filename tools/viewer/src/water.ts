@@ -33,12 +33,16 @@ export function kindsOf(mesh: MeshView, facts: Facts): Uint8Array {
 const longShallow = 0.012, highShallow = 0.03;
 /** The same length of a triangle that touches only such water: from coast to coast across a sea. Marshes have shorter ones. */
 const acrossSea = 0.06;
+/** And of one with water on two sides, or on one and thin: a dam from coast to coast, which a real one is wider than, or has a crest. */
+const asDam = 0.004;
+/** The height of a thin triangle over its longest side, as a share of that. */
+const thin = 0.12;
 /** Times that such triangles are looked for behind each other. */
 const mostSteps = 8;
 
 /**
  * Between water and coast a coarse mesh has long triangles that rise by little: nearly all of what they cover is water. They become
- * so, too, and the still longer ones that touch only them.
+ * so, too, the still longer ones that touch only them, and what is left between them.
  */
 function addShallows(mesh: MeshView, facts: Facts, kinds: Uint8Array): void {
   const { vertices, triangles, triangleCount } = mesh;
@@ -50,14 +54,15 @@ function addShallows(mesh: MeshView, facts: Facts, kinds: Uint8Array): void {
   }
   const whole = Math.hypot(facts.maxX - facts.minX, facts.maxY - facts.minY);
   for (let n = 0; levels.size > 0 && n < mostSteps; ++n) {
-    levels = turned(mesh, facts, kinds, { levels, long: (n === 0 ? longShallow : acrossSea) * whole });
+    levels = turned(mesh, facts, kinds, { levels, long: (n === 0 ? longShallow : acrossSea) * whole, dam: asDam * whole });
   }
 }
 
 /** Turns triangles at corners of water into water where they are long and shallow. Returns the levels of their corners. */
 function turned(
-  { vertices, triangles, triangleCount }: MeshView, facts: Facts, kinds: Uint8Array, from: { levels: ReadonlyMap<number, number>; long: number },
+  mesh: MeshView, facts: Facts, kinds: Uint8Array, from: { levels: ReadonlyMap<number, number>; long: number; dam: number },
 ): Map<number, number> {
+  const { vertices, triangles, triangleCount } = mesh;
   const found = new Map<number, number>();
   const high = highShallow * (facts.maxHeight - facts.minHeight);
   for (let t = 0, at = 0; t < triangleCount; ++t, at += triangleWords) {
@@ -69,7 +74,10 @@ function turned(
     const apart = (a: number, b: number): number =>
       Math.hypot(vertices[a * vertexWords] - vertices[b * vertexWords], vertices[a * vertexWords + 1] - vertices[b * vertexWords + 1]);
     const length = Math.max(apart(corners[0], corners[1]), apart(corners[1], corners[2]), apart(corners[2], corners[0]));
-    if (length <= from.long || Math.abs(mean - level) >= high) continue;
+    if (length <= from.dam || Math.abs(mean - level) >= high) continue;
+    const sides = [3, 4, 5].filter((k) => triangles[at + k] !== none && kinds[triangles[at + k]] === water).length;
+    const isDam = sides > 1 || (sides > 0 && areaOf(mesh, t) < thin * length * length);
+    if (!isDam && length <= from.long) continue;
     kinds[t] = water;
     for (const v of corners) found.set(v, level);
   }

@@ -328,13 +328,25 @@ test('water is what is flat at 0, or flat, large and below its shores', () => {
 test('a sea that a coarse mesh crosses in long shallow triangles is one, and marshes beside it are land', () => {
   const corners = [[0, 0, 0], [300, 0, 0], [0, 10, 0], [600, 20, 1], [300, 30, 3], [900, 40, 2], [310, 40, 2], [305, 45, 2], [900, 70, 60]];
   const triangles = [[0, 1, 2], [1, 3, 4], [3, 5, 4], [6, 7, 4], [5, 8, 3]];
+  assert.deepEqual(kinds(corners, triangles.map((t) => [...t, none, none, none]), 100), [water, water, water, land, land]);
+});
+
+test('a thin dam of triangles from coast to coast is water, and the land beside it is not', () => {
+  const corners = [[0, 0, 0], [100, 0, 0], [100, 10, 0], [101, 0, 2], [101, 10, 2], [108, 5, 2]];
+  // With the neighbours across from their corners.
+  const triangles = [[0, 1, 2, 1, none, none], [1, 3, 2, 2, 0, none], [3, 4, 2, none, 1, 3], [3, 5, 4, none, 2, none]];
+  assert.deepEqual(kinds(corners, triangles, 400), [water, water, water, land]);
+});
+
+/** The kinds of triangles of a mesh on a terrain of 1000 steps by some. */
+function kinds(corners: number[][], triangles: number[][], maxY: number): number[] {
   const mesh = {
     vertexCount: corners.length, triangleCount: triangles.length, vertices: Int32Array.from(corners.flatMap((c) => [...c, 0])), classes: new Uint8Array(triangles.length),
-    triangles: Uint32Array.from(triangles.flatMap((t) => [...t, none, none, none])), hasHeight: new Uint8Array(corners.length).fill(1), facts: new Uint8Array(),
+    triangles: Uint32Array.from(triangles.flat()), hasHeight: new Uint8Array(corners.length).fill(1), facts: new Uint8Array(),
   };
-  const facts = { minX: 0, minY: 0, maxX: 1000, maxY: 100, minHeight: 0, maxHeight: 100, heightIsFloat: 0, heightStep: 1, heightOffset: 0 } as unknown as Facts;
-  assert.deepEqual([...kindsOf(mesh, facts)], [water, water, water, land, land]);
-});
+  const facts = { minX: 0, minY: 0, maxX: 1000, maxY, minHeight: 0, maxHeight: 100, heightIsFloat: 0, heightStep: 1, heightOffset: 0 } as unknown as Facts;
+  return [...kindsOf(mesh, facts)];
+}
 
 test("the tree of a base map's tiles finds each of them, in rows that every card takes", () => {
   // Each tile at the finest level, in a part of its own.

@@ -53,7 +53,7 @@ function viewed(): { view: View; rest: () => number } {
   const camera = new Camera();
   Object.assign(camera, { width: 1100, height: 720 });
   const { positions, corners } = hills();
-  const cells = heightCellsOf(positions, corners);
+  const cells = heightCellsOf(positions, corners, new Uint32Array(), 1500);
   const view = new View(camera, { groundAt: relief, meets, someBox: (...asked) => someBox(cells, ...asked) });
   view.setFrame(framed());
   let hasChanged = false;
@@ -238,10 +238,11 @@ test('what may be in sight is wanted, where no ray of the picture meets it, too'
 });
 
 test('the heights of cells hold those of all triangles there', () => {
-  const positions = Float32Array.from([0, 0, 0, 100, 0, 50, 0, 100, 20, 100, 100, 90, 40, 40, 7, 60, 60, 95, 50, 50, 12]);
+  const positions = Float32Array.from([0, 0, 0, 100, 0, 50, 0, 100, 20, 100, 100, 90, 40, 40, 7, 60, 60, 95, 50, 50, 12,
+    200, 0, 5, 201, 0, 5, 200, 1, 5]);
   // The last stands on its edge.
   const corners = Uint32Array.from([0, 1, 2, 1, 3, 2, 4, 5, 6]);
-  const cells = heightCellsOf(positions, corners);
+  const cells = heightCellsOf(positions, corners, Uint32Array.from([0, 1, 2].map((i) => i + 7)), 2000);
   const within = (window: Window): [low: number, high: number] => {
     let low = Infinity, high = -Infinity;
     someBox(cells, window, 0, (least, most) => {
@@ -251,6 +252,7 @@ test('the heights of cells hold those of all triangles there', () => {
     return [low, high];
   };
   assert.deepEqual(within([0, 0, 100, 100]), [0, 95]);
+  assert.deepEqual(within([190, 0, 201, 1]), [0, 2000], 'a void may be ground of any height');
   const [low, high] = within([10, 10, 11, 11]);
   assert.ok(low <= 7 && low > 6 && high >= 7.7 && high < 9, `${low} ${high}: of a large triangle what lies in the cell`);
   assert.deepEqual(within([49, 49, 51, 51]), [7, 95]);
