@@ -445,7 +445,8 @@ void add_question(ask::Parameters& rows, ExportOptions& options) {
           "or Float64 where that does not hold the heights of vertices)")
       .of({"Int16", "Int32", "Float32", "Float64"});
   rows.add("nodata", &options.nodata, "V",
-           "Rasters of heights: the value where there is no surface (default -9999)")
+           "Rasters of heights: the value where there is no surface, which no height is (default "
+           "-9999)")
       .within(NumberRange::kAny);
   rows.add("co", &options.creation_options, "KEY=VALUE",
            "Rasters: a creation option of GDAL's driver; may be given several times")

@@ -21,17 +21,18 @@ constexpr std::uint64_t kSmallestLimit = 1 << 20;
 /// Shares of the memory, in eighths. While tiles are traced it is that of the tiles, of the pieces,
 /// which cannot be put on disk, and of points. While lines are cut at a region, what the tiles have
 /// given back is that of the cut pieces, of as many points and of the line at hand; where nothing is
-/// cut, of the line alone.
+/// cut, of the line, which has what pieces and points have not taken, too.
 struct Shares {
   std::uint64_t tiles, pieces, points, cut_pieces;
 };
 constexpr std::uint64_t kShareOfCutLine = 1;
 
-/// Points that cannot be put on disk either are most of what long lines take.
+/// Where points cannot be put on disk either, and are not needed twice, they have more: they are most of
+/// what long lines take.
 Shares shares_of(const IsolineRequest& request) {
-  if (!request.temporary_folder.empty()) return {4, 3, 1, 2};
   const bool is_cut = request.region && request.cuts;
-  return is_cut ? Shares{4, 3, 1, 2} : Shares{2, 3, 3, 0};
+  if (is_cut || !request.temporary_folder.empty()) return {4, 3, 1, 2};
+  return {2, 3, 3, 0};
 }
 
 std::uint64_t bytes_of_share(const IsolineRequest& request, std::uint64_t eighths) {
@@ -111,7 +112,7 @@ class IsolineExtraction {
     result_.tiles = traces.tiles;
   }
 
-  /// Where nothing is cut, a line has what tiles have given back, and what pieces and points have not taken.
+  /// Bytes for writing one line.
   [[nodiscard]] std::uint64_t room_for_a_line() const {
     if (clip_) return bytes_of_share(request_, kShareOfCutLine);
     const std::uint64_t points = std::min<std::uint64_t>(result_.points_.size() * sizeof(MapPoint),

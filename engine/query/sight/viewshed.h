@@ -109,7 +109,7 @@ struct Viewshed {
 /// In a terrain with voids nothing is certainly hidden, since the level may cover a void with
 /// surface, and a void of the level may hold ground of any height that the terrain has. With
 /// curvature both are certain up to the straightness of edges (ViewshedRequest::curvature). A file
-/// that left records out (its base_deviation is more than the rounding of heights) is treated as a
+/// that left records out (leaves_records_out(), select/certificate.h) is treated as a
 /// level of detail too: d grows by base_deviation at any distance, and by as much again for the
 /// ground below an eye that stands on it.
 /// @throws Error invalid_argument    as Detail; the eye is outside of the terrain, on a void

@@ -52,7 +52,8 @@ export function drawnMesh(mesh: MeshView, frame: Frame): DrawnMesh {
   return {
     positions, corners, parts, normals: drawnNormals(positions, landCorners.length > 0 ? landCorners : surface, raster.openness(positions)),
     tileExtents: tileExtentsOf(positions, corners, parts), ...borders, grid: gridOf(positions, surface),
-    cells: heightCellsOf(positions, surface, corners.subarray(surface.length), frame.relief), spread: raster.spread, extent: extentOf(positions, surface), summit: summitOf(positions, surface),
+    cells: heightCellsOf(positions, surface, corners.subarray(surface.length), frame.relief), spread: raster.spread,
+    extent: extentOf(positions, surface), summit: summitOf(positions, surface),
   };
 }
 

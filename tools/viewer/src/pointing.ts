@@ -92,7 +92,8 @@ export class Pointing {
       where: frame.where(at), height: frame.heightAt(place.z), slack: certificate?.deviation ?? null,
     });
     const { service } = this;
-    if (service !== null && certificate?.deviation !== 0) this.timer = window.setTimeout(() => { void this.askAbout(service, frame, at); }, staysAfter);
+    if (service === null || certificate?.deviation === 0) return;
+    this.timer = window.setTimeout(() => { void this.askAbout(service, frame, at); }, staysAfter);
   }
 
   /** Tells a place's height as the full terrain has it. Where the service does not answer, that of the picture stays. */
